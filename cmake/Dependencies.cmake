@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every library is a Debian 12 package; scripts/setup installs them.
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
+find_package(hwy REQUIRED)
+if(GISCHT_TESTS)
+    find_package(GTest REQUIRED)
+endif()
+if(GISCHT_BENCH)
+    find_package(benchmark REQUIRED)
+endif()
+
+# OpenVDB's own find module wants Blosc, Boost and Imath details that this door does not need.
+add_library(gischt_openvdb INTERFACE)
+find_library(OPENVDB_LIBRARY openvdb REQUIRED)
+find_path(OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
+target_include_directories(gischt_openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE})
+target_link_libraries(gischt_openvdb INTERFACE ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
+
+find_path(STB_INCLUDE stb/stb_image.h REQUIRED)
+add_library(gischt_stb INTERFACE)
+target_include_directories(gischt_stb SYSTEM INTERFACE ${STB_INCLUDE})

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/noise.h"
+
+#include <cmath>
+
+#include "base/random.h"
+#include "math/interpolate.h"
+
+namespace gischt {
+
+static std::uint64_t lattice_hash(int i, int j, int k, std::uint64_t seed) {
+    const auto u = [](int a) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)); };
+    return mix64(seed ^ (u(i) | u(j) << 32) * 0x9e3779b97f4a7c15ULL ^ u(k) * 0xd1342543de82ef95ULL);
+}
+
+// One of the twelve edge directions of a cube, dotted with d (Perlin 2002).
+static float edge_gradient(std::uint64_t hash, const Vec3f& d) {
+    const auto h = static_cast<unsigned>((hash >> 32) % 12);
+    const float a = h < 8 ? d.x : d.y, b = h < 4 ? d.y : d.z;
+    return ((h & 1) ? -a : a) + ((h & 2) ? -b : b);
+}
+
+float gradient_noise(const Vec3d& p, std::uint64_t seed) {
+    const Vec3i c = floor(p);
+    const Vec3f f(p - Vec3d(c));
+    auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
+    const float u = fade(f.x), v = fade(f.y), w = fade(f.z);
+    float corner[2][2][2];
+    for (int k = 0; k < 2; ++k) {
+        for (int j = 0; j < 2; ++j) {
+            for (int i = 0; i < 2; ++i) {
+                corner[k][j][i] = edge_gradient(lattice_hash(c.x + i, c.y + j, c.z + k, seed),
+                                                f - Vec3f(Vec3i(i, j, k)));
+            }
+        }
+    }
+    float plane[2];
+    for (int k = 0; k < 2; ++k) {
+        plane[k] = lerp(lerp(corner[k][0][0], corner[k][0][1], u),
+                        lerp(corner[k][1][0], corner[k][1][1], u), v);
+    }
+    return lerp(plane[0], plane[1], w);
+}
+
+float fractal_noise(const Vec3d& p, int octaves, float gain, std::uint64_t seed) {
+    float sum = 0, weight = 1, total = 0;
+    Vec3d q = p;
+    for (int o = 0; o < octaves; ++o) {
+        sum += weight * gradient_noise(q, seed + static_cast<std::uint64_t>(o));
+        total += weight;
+        weight *= gain;
+        // The odd offset keeps the zeros at lattice points of one octave off those of the next.
+        q = 2.0 * q + Vec3d(0.37, 0.71, 0.53);
+    }
+    return total > 0 ? sum / total : 0;
+}
+
+float cellular_noise(const Vec3d& p, std::uint64_t seed) {
+    const Vec3i c = floor(p);
+    double nearest = 4;
+    for (int k = -1; k <= 1; ++k) {
+        for (int j = -1; j <= 1; ++j) {
+            for (int i = -1; i <= 1; ++i) {
+                const Vec3i cell = c + Vec3i(i, j, k);
+                const std::uint64_t key = lattice_hash(cell.x, cell.y, cell.z, seed);
+                const Vec3d point =
+                    Vec3d(cell) +
+                    Vec3d(random_uniform(key, 0), random_uniform(key, 1), random_uniform(key, 2));
+                const Vec3d d = point - p;
+                nearest = std::min(nearest, dot(d, d));
+            }
+        }
+    }
+    return static_cast<float>(std::sqrt(nearest));
+}
+
+}  // namespace gischt

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/sobol.h"
+
+#include "base/random.h"
+
+namespace gischt {
+
+static std::uint32_t reverse_bits(std::uint32_t x) {
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    return __builtin_bswap32(x);
+}
+
+// A hash in which bit i of the result depends on bits 0..i only (Laine & Karras 2011, constants of
+// Burley 2020).
+static std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
+    x += seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return x;
+}
+
+// Nested uniform (Owen) scrambling of the binary digits after the point.
+static std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+    return reverse_bits(laine_karras(reverse_bits(x), seed));
+}
+
+// Second Sobol dimension: its direction numbers are the rows of Pascal's triangle mod 2.
+static std::uint32_t sobol_second(std::uint32_t index) {
+    std::uint32_t result = 0, direction = 1u << 31;
+    for (; index != 0; index >>= 1, direction ^= direction >> 1) {
+        if (index & 1) result ^= direction;
+    }
+    return result;
+}
+
+static float to_unit(std::uint32_t x) {
+    return static_cast<float>(x >> 8) * 0x1p-24f;
+}
+
+Vec2f sobol_2d(std::uint32_t index, std::uint32_t seed) {
+    const std::uint64_t key = random_key(seed);
+    index = owen_scramble(index, random_bits(key, 0));
+    return {to_unit(owen_scramble(reverse_bits(index), random_bits(key, 1))),
+            to_unit(owen_scramble(sobol_second(index), random_bits(key, 2)))};
+}
+
+float sobol_1d(std::uint32_t index, std::uint32_t seed) {
+    return to_unit(owen_scramble(reverse_bits(index), random_bits(random_key(seed), 1)));
+}
+
+}  // namespace gischt
