@@ -17,11 +17,11 @@ namespace gischt {
 namespace {
 
 [[noreturn]] void fail_type(const Value& value, const Place& place) {
-    const Shape& shape = place.parameter.shape;
+    const ParameterForm& form = place.parameter.form;
     const bool keyframes = value.is_table() && value.find("t");
-    if (keyframes && !shape.keyframable) place.fail(value.at, "cannot be keyframed");
+    if (keyframes && !form.keyframable) place.fail(value.at, "cannot be keyframed");
     std::string must = type_text(place.parameter);
-    if (shape.type != Shape::Type::Boolean && shape.count == 1) must = "a " + must;
+    if (form.type != ParameterForm::Type::Boolean && form.count == 1) must = "a " + must;
     place.fail(value.at, fmt::format("must be {}, not {}", must, value.describe()));
 }
 
@@ -72,10 +72,10 @@ Value write_scalar(const S& in) {
 }
 
 template <class S>
-constexpr Shape::Type type_of() {
-    if (std::is_same_v<S, bool>) return Shape::Type::Boolean;
-    if (std::is_same_v<S, std::string>) return Shape::Type::String;
-    return std::is_integral_v<S> ? Shape::Type::Integer : Shape::Type::Real;
+constexpr ParameterForm::Type type_of() {
+    if (std::is_same_v<S, bool>) return ParameterForm::Type::Boolean;
+    if (std::is_same_v<S, std::string>) return ParameterForm::Type::String;
+    return std::is_integral_v<S> ? ParameterForm::Type::Integer : ParameterForm::Type::Real;
 }
 
 const Value::Array& array_of(const Value& value, std::size_t count, const Place& place) {
@@ -90,7 +90,7 @@ const Value::Array& array_of(const Value& value, std::size_t count, const Place&
 // Form<M>: how values of type M are read and written, from the inside out.
 template <class S>
 struct Form {
-    static Shape shape() { return {.type = type_of<S>()}; }
+    static ParameterForm form() { return {.type = type_of<S>()}; }
     static void read(S& out, const Value& value, const Place& place) {
         read_scalar(out, value, place);
     }
@@ -99,7 +99,7 @@ struct Form {
 
 template <class S>
 struct Form<Vec2<S>> {
-    static Shape shape() { return {.type = type_of<S>(), .count = 2}; }
+    static ParameterForm form() { return {.type = type_of<S>(), .count = 2}; }
     static void read(Vec2<S>& out, const Value& value, const Place& place) {
         const Value::Array& a = array_of(value, 2, place);
         read_scalar(out.x, a[0], place);
@@ -112,7 +112,7 @@ struct Form<Vec2<S>> {
 
 template <class S>
 struct Form<Vec3<S>> {
-    static Shape shape() { return {.type = type_of<S>(), .count = 3}; }
+    static ParameterForm form() { return {.type = type_of<S>(), .count = 3}; }
     static void read(Vec3<S>& out, const Value& value, const Place& place) {
         if (place.parameter.options.broadcast && value.is_number()) {
             S all{};
@@ -132,10 +132,10 @@ struct Form<Vec3<S>> {
 
 template <class E>
 struct Form<std::vector<E>> {
-    static Shape shape() {
-        Shape shape = Form<E>::shape();
-        shape.list = true;
-        return shape;
+    static ParameterForm form() {
+        ParameterForm form = Form<E>::form();
+        form.list = true;
+        return form;
     }
     static void read(std::vector<E>& out, const Value& value, const Place& place) {
         if (!value.is_array()) fail_type(value, place);
@@ -202,10 +202,10 @@ void check_keyframes(const Value& table, const Place& place) {
 
 template <class E>
 struct Form<Keyed<E>> {
-    static Shape shape() {
-        Shape shape = Form<E>::shape();
-        shape.keyframable = true;
-        return shape;
+    static ParameterForm form() {
+        ParameterForm form = Form<E>::form();
+        form.keyframable = true;
+        return form;
     }
     static void read(Keyed<E>& out, const Value& value, const Place& place) {
         if (!value.is_table()) {
@@ -239,8 +239,8 @@ struct Form<Keyed<E>> {
 }  // namespace
 
 template <class M>
-Shape Codec<M>::shape() {
-    return Form<M>::shape();
+ParameterForm Codec<M>::form() {
+    return Form<M>::form();
 }
 template <class M>
 void Codec<M>::read(M& out, const Value& value, const Place& place) {

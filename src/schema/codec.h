@@ -27,7 +27,7 @@ concept PlainType = OneOf<M, bool, int, std::int64_t, float, double, std::string
 // codec.cpp for every PlainType.
 template <class M>
 struct Codec {
-    static Shape shape();
+    static ParameterForm form();
     static void read(M& out, const Value& value, const Place& place);
     static Value write(const M& in);
 };

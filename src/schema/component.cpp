@@ -13,7 +13,7 @@ namespace gischt {
 namespace {
 
 std::string in_table(const std::string& path) {
-    return path.empty() ? " at the top level" : " in [" + path + "]";
+    return path.empty() ? " at the top level" : fmt::format(" in [{}]", path);
 }
 
 std::string named(std::string_view key, const std::string& path) {
@@ -22,6 +22,15 @@ std::string named(std::string_view key, const std::string& path) {
 
 [[noreturn]] void fail_at(const Location& at, std::string fact, std::string hint = {}) {
     throw Error(ErrorKind::Usage, at.text(), std::move(fact), std::move(hint));
+}
+
+[[noreturn]] void fail_string(const Value& value, std::string_view key, const std::string& path) {
+    fail_at(value.at,
+            fmt::format("{} must be a string, not {}", named(key, path), value.describe()));
+}
+
+std::string missing(std::string_view key, const std::string& path) {
+    return fmt::format("key '{}' is missing{}", key, in_table(path));
 }
 
 std::vector<std::string> words_of(const std::vector<Alternative>& alternatives) {
@@ -50,8 +59,7 @@ void read_parameters(const Component& component, void* object, const Value& tabl
         if (const Value* value = table.find(p.key)) {
             p.read(object, *value, Place{path, p});
         } else if (p.options.required) {
-            fail_at(table.at, fmt::format("key '{}' is missing{}", p.key, in_table(path)),
-                    p.options.help);
+            fail_at(table.at, missing(p.key, path), p.options.help);
         }
     }
 }
@@ -60,10 +68,7 @@ void read_parameters(const Component& component, void* object, const Value& tabl
 const Alternative& choose(const Component& component, const void* object, const Value& table,
                           const std::string& path) {
     if (const Value* word = table.find(component.selector)) {
-        if (!word->is_string()) {
-            fail_at(word->at, named(component.selector, path) + " must be a string, not " +
-                                  std::string(word->describe()));
-        }
+        if (!word->is_string()) fail_string(*word, component.selector, path);
         if (const Alternative* a = component.find_alternative(word->string())) return *a;
         fail_at(
             word->at,
@@ -76,6 +81,20 @@ const Alternative& choose(const Component& component, const void* object, const 
     throw Error(ErrorKind::Internal, component.name, "its default is none of its alternatives");
 }
 
+void refuse_equal_names(const std::vector<const Value*>& elements, const std::string& path) {
+    std::map<std::string, Location> names;
+    for (const Value* element : elements) {
+        const Value* name = element->find("name");
+        if (!name) continue;
+        if (!name->is_string()) fail_string(*name, "name", path);
+        const auto [first, is_new] = names.emplace(name->string(), name->at);
+        if (is_new) continue;
+        fail_at(name->at,
+                fmt::format("there are two of the name '{}'{}", name->string(), in_table(path)),
+                "the first is at " + first->second.text());
+    }
+}
+
 }  // namespace
 
 void Place::fail(const Location& at, std::string_view fact, std::string hint) const {
@@ -84,7 +103,7 @@ void Place::fail(const Location& at, std::string_view fact, std::string hint) co
 
 void Fail::operator()(std::string_view key, std::string_view fact, std::string hint) const {
     const Value* value = key.empty() ? nullptr : table_.find(key);
-    const std::string subject = key.empty() ? "[" + path_ + "]" : named(key, path_);
+    const std::string subject = key.empty() ? fmt::format("[{}]", path_) : named(key, path_);
     fail_at(value ? value->at : table_.at, fmt::format("{} {}", subject, fact), std::move(hint));
 }
 
@@ -170,32 +189,19 @@ std::vector<const Value*> list_elements(const Value& value, const Place& place) 
     } else {
         place.fail(value.at, fmt::format("must be a list of tables, not {}", value.describe()));
     }
-    std::map<std::string, const Value*> names;
     const Component& component = *place.parameter.component;
+    const std::string path = join_path(place.table, place.parameter.key);
     for (const Value* element : elements) {
         if (!element->is_table()) {
             place.fail(element->at,
                        fmt::format("must be a list of tables, not of {}", element->describe()));
         }
         if (!component.alternatives.empty() && !element->find(component.selector)) {
-            fail_at(element->at,
-                    fmt::format("key '{}' is missing{}", component.selector,
-                                in_table(join_path(place.table, place.parameter.key))),
+            fail_at(element->at, missing(component.selector, path),
                     hint_for("", words_of(component.alternatives)));
         }
-        const Value* name = element->find("name");
-        if (!name) continue;
-        const std::string path = join_path(place.table, place.parameter.key);
-        if (!name->is_string()) {
-            fail_at(name->at, named("name", path) + " must be a string, not " +
-                                  std::string(name->describe()));
-        }
-        const auto [first, is_new] = names.emplace(name->string(), name);
-        if (is_new) continue;
-        fail_at(name->at,
-                fmt::format("there are two of the name '{}'{}", name->string(), in_table(path)),
-                "the first is at " + first->second->at.text());
     }
+    refuse_equal_names(elements, path);
     return elements;
 }
 

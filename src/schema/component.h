@@ -27,7 +27,7 @@ struct ParameterOptions {
 };
 
 // The form that a parameter's value has in a scene file.
-struct Shape {
+struct ParameterForm {
     enum class Type { Boolean, Integer, Real, String, Choice, Table };
     Type type = Type::Real;
     int count = 1;             // numbers in a vector
@@ -49,7 +49,7 @@ struct Place;
 struct Parameter {
     std::string key;
     ParameterOptions options;
-    Shape shape;
+    ParameterForm form;
     std::vector<ChoiceInfo> choices;  // for Type::Choice
     const Component* component{};     // for Type::Table: what the table contains
     std::function<void(void* object, const Value&, const Place&)> read;

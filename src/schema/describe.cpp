@@ -24,36 +24,36 @@ std::string range_text(const ParameterOptions& o) {
     return text;
 }
 
-static std::string element_text(const Shape& shape, bool many) {
-    switch (shape.type) {
-        case Shape::Type::Boolean:
+static std::string element_text(const ParameterForm& form, bool many) {
+    switch (form.type) {
+        case ParameterForm::Type::Boolean:
             return "true or false";
-        case Shape::Type::Integer:
+        case ParameterForm::Type::Integer:
             return many ? "whole numbers" : "whole number";
-        case Shape::Type::Real:
+        case ParameterForm::Type::Real:
             return many ? "numbers" : "number";
-        case Shape::Type::String:
+        case ParameterForm::Type::String:
             return many ? "strings" : "string";
-        case Shape::Type::Choice:
+        case ParameterForm::Type::Choice:
             return "one word";
-        case Shape::Type::Table:
+        case ParameterForm::Type::Table:
             return many ? "tables" : "table";
     }
     return {};
 }
 
 std::string type_text(const Parameter& parameter) {
-    const Shape& shape = parameter.shape;
-    if (shape.type == Shape::Type::Choice) {
+    const ParameterForm& form = parameter.form;
+    if (form.type == ParameterForm::Type::Choice) {
         std::string text;
         for (const ChoiceInfo& c : parameter.choices) text += (text.empty() ? "" : ", ") + c.word;
         return "one of " + text;
     }
-    std::string text = element_text(shape, shape.count != 1 || shape.list);
-    if (shape.count > 1) text = fmt::format("{} {}", shape.count, text);
-    if (shape.list) text = (shape.count > 1 ? "list of lists of " : "list of ") + text;
+    std::string text = element_text(form, form.count != 1 || form.list);
+    if (form.count > 1) text = fmt::format("{} {}", form.count, text);
+    if (form.list) text = (form.count > 1 ? "list of lists of " : "list of ") + text;
     if (parameter.options.broadcast) text += " or one";
-    if (shape.keyframable) text += " over time";
+    if (form.keyframable) text += " over time";
     return text;
 }
 

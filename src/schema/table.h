@@ -103,9 +103,10 @@ class Table : public TypedComponent<T> {
 template <class V>
 class Variants : public TypedComponent<V> {
   public:
-    Variants(std::string name, std::string help, std::string selector = "type")
-        : TypedComponent<V>(std::move(name), std::move(help)) {
-        this->selector = std::move(selector);
+    Variants(std::string component_name, std::string component_help,
+             std::string selector_key = "type")
+        : TypedComponent<V>(std::move(component_name), std::move(component_help)) {
+        this->selector = std::move(selector_key);
     }
 
     template <class A>
@@ -151,8 +152,8 @@ Table<T>& Table<T>::add(std::string key, M C::*member, ParameterOptions options)
     Parameter p;
     p.key = std::move(key);
     p.options = std::move(options);
-    p.shape = Codec<Plain>::shape();
-    p.shape.optional = Unwrapped<M>::optional;
+    p.form = Codec<Plain>::form();
+    p.form.optional = Unwrapped<M>::optional;
     p.read = [member](void* object, const Value& value, const Place& place) {
         if constexpr (Unwrapped<M>::optional) {
             Codec<Plain>::read((cast(object).*member).emplace(), value, place);
@@ -181,7 +182,7 @@ Table<T>& Table<T>::choice(
     Parameter p;
     p.key = std::move(key);
     p.options = std::move(options);
-    p.shape = {.type = Shape::Type::Choice, .optional = Unwrapped<E>::optional};
+    p.form = {.type = ParameterForm::Type::Choice, .optional = Unwrapped<E>::optional};
     for (const auto& c : choices) p.choices.push_back({c.word, c.help});
     p.read = [member, choices](void* object, const Value& value, const Place& place) {
         cast(object).*member = choices[read_choice(value, place)].value;
@@ -204,7 +205,7 @@ Table<T>& Table<T>::sub(std::string key, M C::*member, const TypedComponent<P>& 
     Parameter p;
     p.key = std::move(key);
     p.options = std::move(options);
-    p.shape = {.type = Shape::Type::Table, .optional = Unwrapped<M>::optional};
+    p.form = {.type = ParameterForm::Type::Table, .optional = Unwrapped<M>::optional};
     p.component = &component;
     p.read = [member, &component](void* object, const Value& value, const Place& place) {
         const std::string path = join_path(place.table, place.parameter.key);
@@ -234,7 +235,7 @@ Table<T>& Table<T>::list(std::string key, std::vector<P> C::*member,
     Parameter p;
     p.key = std::move(key);
     p.options = std::move(options);
-    p.shape = {.type = Shape::Type::Table, .list = true};
+    p.form = {.type = ParameterForm::Type::Table, .list = true};
     p.component = &component;
     p.read = [member, &component](void* object, const Value& value, const Place& place) {
         const std::string path = join_path(place.table, place.parameter.key);

@@ -65,9 +65,42 @@ struct Converter {
     }
 };
 
+// toml++ limits how deeply brackets nest but not dotted keys, and would exhaust the stack on a
+// long one. Counts dots outside strings and comments since the last character that ends a key.
+void refuse_long_keys(std::string_view text, const std::string& name) {
+    Location at{name, 1, 0};
+    int dots = 0;
+    char quote = 0;  // the quotation mark that ends the string we are in; 0 outside
+    bool in_comment = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        ++at.column;
+        if (c == '\n') {
+            at = {name, at.line + 1, 0};
+            dots = 0;
+            quote = 0;
+            in_comment = false;
+        } else if (in_comment) {
+            continue;
+        } else if (quote) {
+            if (c == quote) quote = 0;
+            if (c == '\\' && quote == '"') ++i;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '#') {
+            in_comment = true;
+        } else if (std::string_view(",=[]{}").find(c) != std::string_view::npos) {
+            dots = 0;
+        } else if (c == '.' && ++dots > deepest) {
+            throw Error(ErrorKind::Usage, at.text(), "nested too deeply");
+        }
+    }
+}
+
 }  // namespace
 
 Value parse_toml(std::string_view text, const std::string& name) {
+    refuse_long_keys(text, name);
     try {
         const toml::table document = toml::parse(text, std::string_view(name));
         Value root = Converter{name}.convert(document, 0);

@@ -52,12 +52,10 @@ std::string joined(const List& list, TextOf text_of) {
 
 std::string inline_table(const Value::Members& members) {
     if (members.empty()) return "{}";
-    return "{ " +
-           joined(members,
-                  [](const Value::Member& m) {
-                      return key_text(m.key) + " = " + to_inline_toml(m.value);
-                  }) +
-           " }";
+    const auto text_of = [](const Value::Member& m) {
+        return key_text(m.key) + " = " + to_inline_toml(m.value);
+    };
+    return fmt::format("{{ {} }}", joined(members, text_of));
 }
 
 bool is_list_of_tables(const Value& value) {
@@ -108,7 +106,7 @@ std::string to_inline_toml(const Value& value) {
         case Value::Kind::String:
             return string_text(value.string());
         case Value::Kind::Array:
-            return "[" + joined(value.array(), to_inline_toml) + "]";
+            return fmt::format("[{}]", joined(value.array(), to_inline_toml));
         case Value::Kind::Table:
             return inline_table(value.members());
     }
