@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid/brick_volume.h"
+
+#include <algorithm>
+
+#include "math/interpolate.h"
+
+namespace gischt {
+namespace {
+
+// Cell and fraction of a local coordinate.
+struct Split {
+    int cell;
+    float fraction;
+};
+Split split(float local) {
+    constexpr float edge = BrickVolume::brick_edge;
+    const float inside = std::min(std::max(local, 0.0f), edge);
+    const int i = std::min(static_cast<int>(inside), BrickVolume::brick_edge - 1);
+    return {i, inside - static_cast<float>(i)};
+}
+
+template <class T>
+float trilinear(const T* s, const Vec3f& f) {
+    constexpr int y = BrickVolume::row, z = y * y;
+    const auto v = [s](int i) { return static_cast<float>(s[i]); };
+    const float a = lerp(lerp(v(0), v(1), f.x), lerp(v(y), v(y + 1), f.x), f.y);
+    const float b = lerp(lerp(v(z), v(z + 1), f.x), lerp(v(z + y), v(z + y + 1), f.x), f.y);
+    return lerp(a, b, f.z);
+}
+
+}  // namespace
+
+std::size_t BrickVolume::bytes() const {
+    return compact_.size() * sizeof(std::uint16_t) + full_.size() * sizeof(float) +
+           blocks_.size() * sizeof(Block) + coord_.size() * (sizeof(Vec3i) + sizeof(Vec2f) + 1) +
+           (pages_.size() + table_.size()) * sizeof(std::int32_t);
+}
+
+double BrickVolume::cell_size() const {
+    return std::min(
+        {length(to_world_.column[0]), length(to_world_.column[1]), length(to_world_.column[2])});
+}
+
+Box3d BrickVolume::world_bounds() const {
+    if (size() == 0) return Box3d::empty();
+    return to_world_.bounds({Vec3d(support_.lo), Vec3d(support_.hi)});
+}
+
+int BrickVolume::find(const Vec3i& b) const {
+    if (!brick_bounds_.contains(b)) return -1;
+    const Vec3i p = Vec3i(b.x >> page_log, b.y >> page_log, b.z >> page_log) - page_box_.lo;
+    const Vec3i n = page_box_.size();
+    const auto page = pages_[static_cast<std::size_t>(p.x) +
+                             static_cast<std::size_t>(n.x) *
+                                 (static_cast<std::size_t>(p.y) +
+                                  static_cast<std::size_t>(n.y) * static_cast<std::size_t>(p.z))];
+    return table_[static_cast<std::size_t>(page) * page_size +
+                  static_cast<std::size_t>((b.x & 7) + 8 * (b.y & 7) + 64 * (b.z & 7))];
+}
+
+float BrickVolume::at(const Vec3d& q) const {
+    constexpr double scale = 1.0 / brick_edge;
+    // A point too far away for an int is outside, whatever its brick.
+    if (!(max_component(abs(q)) < 1e8)) return background_;
+    const Vec3i b = floor(q * scale);
+    const int brick = find(b);
+    return brick < 0 ? background_ : at_local(brick, Vec3f(q - Vec3d(b) * double{brick_edge}));
+}
+
+float BrickVolume::at_local(int brick, const Vec3f& local) const {
+    const Split x = split(local.x), y = split(local.y), z = split(local.z);
+    const std::size_t first = static_cast<std::size_t>(brick) * samples +
+                              static_cast<std::size_t>(x.cell + row * (y.cell + row * z.cell));
+    const Vec3f f(x.fraction, y.fraction, z.fraction);
+    if (!is_compact()) return trilinear(full_.data() + first, f);
+    const Vec2f d = decode_[static_cast<std::size_t>(brick)];
+    return d.x + d.y * trilinear(compact_.data() + first, f);
+}
+
+void BrickVolume::along(int brick, const Vec3f& entry, const Vec3f& step, const float* t, int n,
+                        float* out) const {
+    for (int i = 0; i < n; ++i) out[i] = at_local(brick, entry + t[i] * step);
+}
+
+}  // namespace gischt
