@@ -22,7 +22,10 @@ namespace {
     if (keyframes && !form.keyframable) place.fail(value.at, "cannot be keyframed");
     std::string must = type_text(place.parameter);
     if (form.type != ParameterForm::Type::Boolean && form.count == 1) must = "a " + must;
-    place.fail(value.at, fmt::format("must be {}, not {}", must, value.describe()));
+    // 2.5 for a whole number: the value says more than its type.
+    const std::string is = value.kind() == Value::Kind::Real ? fmt::format("{}", value.number())
+                                                             : std::string(value.describe());
+    place.fail(value.at, fmt::format("must be {}, not {}", must, is));
 }
 
 void check_range(double number, const Location& at, const Place& place) {
@@ -31,7 +34,8 @@ void check_range(double number, const Location& at, const Place& place) {
     const bool below = o.min_open ? number <= o.min : number < o.min;
     const bool above = o.max_open ? number >= o.max : number > o.max;
     if (!below && !above) return;
-    place.fail(at, fmt::format("must be {}, not {}", range_text(o), number));
+    const std::string unit = o.unit.empty() ? "" : " " + o.unit;
+    place.fail(at, fmt::format("must be {}{}, not {}", range_text(o), unit, number));
 }
 
 // One number, string or truth value, from any scalar.

@@ -20,7 +20,6 @@ std::string range_text(const ParameterOptions& o) {
         if (below && above) text += " and ";
         if (above) text += fmt::format("{} {}", o.max_open ? "below" : "at most", o.max);
     }
-    if (!text.empty() && !o.unit.empty()) text += " " + o.unit;
     return text;
 }
 

@@ -7,7 +7,7 @@
 
 namespace gischt {
 
-// The range in words: "at least 0 and below 1", "above 0 m"; empty when there is none.
+// The range in words, without the unit: "at least 0 and below 1"; empty when there is none.
 std::string range_text(const ParameterOptions& options);
 
 // "whole number", "3 numbers over time", "one of linear, smooth", "list of tables".

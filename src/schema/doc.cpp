@@ -122,6 +122,29 @@ Found find_start(const Component& root, const std::string& word) {
                 hint_for(word, valid));
 }
 
+// The next word of an address, within what was found so far.
+Found step(const Found& from, const std::string& word) {
+    const Component* table = from.parameter ? from.parameter->component : from.component;
+    if (!table) {
+        throw Error(ErrorKind::Usage, "", fmt::format("'{}' has no keys", from.parameter->key));
+    }
+    const Found found = within(*table, word);
+    if (found.component) return found;
+    throw Error(ErrorKind::Usage, "", fmt::format("no key '{}' in [{}]", word, table->name),
+                hint_for(word, words_within(*table)));
+}
+
+Found find_address(const Component& root, std::string_view address) {
+    Found found;
+    for (std::string_view rest = address; !rest.empty();) {
+        const std::size_t dot = rest.find('.');
+        const std::string word(rest.substr(0, dot));
+        rest.remove_prefix(dot == std::string_view::npos ? rest.size() : dot + 1);
+        found = found.component ? step(found, word) : find_start(root, word);
+    }
+    return found;
+}
+
 }  // namespace
 
 std::vector<const Component*> all_components(const Component& root) {
@@ -140,7 +163,10 @@ std::string document(const Component& component) {
         for (const Alternative& a : component.alternatives) {
             out += entry("    " + a.word, indent + 6, a.component->help);
         }
-        for (const Alternative& a : component.alternatives) out += "\n" + document(*a.component);
+        for (const Alternative& a : component.alternatives) {
+            out += "\n";
+            out += document(*a.component);
+        }
         return out;
     }
     std::size_t indent = 0;
@@ -151,31 +177,13 @@ std::string document(const Component& component) {
 
 std::string document(const Component& root, std::string_view address) {
     if (address.empty()) return overview(root);
-    Found found;
-    for (std::string_view rest = address; !rest.empty();) {
-        const std::size_t dot = rest.find('.');
-        const std::string word(rest.substr(0, dot));
-        rest.remove_prefix(dot == std::string_view::npos ? rest.size() : dot + 1);
-        if (!found.component) {
-            found = find_start(root, word);
-            continue;
-        }
-        const Component* table = found.parameter ? found.parameter->component : found.component;
-        if (!table) {
-            throw Error(ErrorKind::Usage, "",
-                        fmt::format("'{}' has no keys", found.parameter->key));
-        }
-        found = within(*table, word);
-        if (!found.component) {
-            throw Error(ErrorKind::Usage, "", fmt::format("no key '{}' in [{}]", word, table->name),
-                        hint_for(word, words_within(*table)));
-        }
-    }
+    const Found found = find_address(root, address);
     if (!found.parameter) return document(*found.component);
-    std::string out =
-        key_entry(*found.component, *found.parameter, found.parameter->key.size() + 4);
-    if (found.parameter->component) out += "\n" + document(*found.parameter->component);
-    return out;
+    const Parameter& p = *found.parameter;
+    std::string out = key_entry(*found.component, p, p.key.size() + 4);
+    if (!p.component) return out;
+    out += "\n";
+    return out += document(*p.component);
 }
 
 }  // namespace gischt

@@ -28,7 +28,7 @@ TEST(Doc, EveryKeyOfEveryComponentIsInTheManual) {
 
 TEST(Doc, AKeyShowsTypeUnitDefaultRangeAndWords) {
     EXPECT_EQ(document(scene_table(), "domain.size"),
-              "  size  3 numbers, m, default [1.0, 1.0, 2.0], above 0 m\n        Edges\n");
+              "  size  3 numbers, m, default [1.0, 1.0, 2.0], above 0\n        Edges\n");
     EXPECT_EQ(document(scene_table(), "fluid.advection"),
               "  advection  word, default \"maccormack\"\n"
               "               semi_lagrangian  smooth\n"

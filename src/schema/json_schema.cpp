@@ -153,7 +153,9 @@ class Writer {
             if (p.form.keyframable) out = {{"anyOf", {out, keyframes_schema(out)}}};
         }
         std::string help = p.options.help;
-        if (!p.options.unit.empty()) help += fmt::format(" [{}]", p.options.unit);
+        if (!p.options.unit.empty()) {
+            help += fmt::format("{}[{}]", help.empty() ? "" : " ", p.options.unit);
+        }
         if (!help.empty()) out["description"] = help;
         if (p.component || p.options.required) return out;
         if (const std::optional<Value> value = p.write(defaults)) out["default"] = to_json(*value);

@@ -41,10 +41,8 @@ std::string row(const Component& component, const Parameter& p) {
         standard = default_text(component, p);
         if (standard != "unset" && standard != "required") standard = code(standard);
     }
-    ParameterOptions without_unit = p.options;
-    without_unit.unit.clear();
     return fmt::format("| {} | {} | {} | {} | {} | {} |\n", code(p.key), type, cell(p.options.unit),
-                       standard, range_text(without_unit), meaning(p));
+                       standard, range_text(p.options), meaning(p));
 }
 
 std::string section(const Component& component) {
@@ -68,7 +66,8 @@ std::string section(const Component& component) {
 std::string markdown(const Component& root) {
     std::string out;
     for (const Component* c : all_components(root)) {
-        out += (out.empty() ? "" : "\n") + section(*c);
+        if (!out.empty()) out += "\n";
+        out += section(*c);
     }
     return out;
 }

@@ -32,6 +32,11 @@ std::string trimmed(std::string_view text) {
     return first == std::string_view::npos ? "" : std::string(text.substr(first, last + 1 - first));
 }
 
+bool has_name(const Value& member, const std::string& word) {
+    const Value* name = member.find("name");
+    return name && name->is_string() && name->string() == word;
+}
+
 // The name by which a member of a list is addressed: its own, or its index.
 std::string member_word(const Value& member, std::size_t index) {
     const Value* name = member.find("name");
@@ -106,10 +111,8 @@ bool Override::belongs_to(const Value* members, const Addressing::Implied& impli
     if (!members || words_.size() < 2) return false;
     const std::span<const Value> all =
         members->is_array() ? std::span(members->array()) : std::span(members, 1);
-    return std::any_of(all.begin(), all.end(), [&](const Value& member) {
-        const Value* name = member.find("name");
-        return name && name->is_string() && name->string() == words_.front();
-    });
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Value& member) { return has_name(member, words_.front()); });
 }
 
 void Override::prepend_implied_root(const Value& scene, const Addressing& addressing) {
@@ -152,8 +155,7 @@ Value& Override::only_element(Value& list, std::size_t i) const {
 Value& Override::element(Value& list, std::size_t& i) const {
     Value::Array& all = list.array();
     for (std::size_t k = 0; k < all.size(); ++k) {
-        const Value* name = all[k].find("name");
-        if (!name || !name->is_string() || name->string() != words_[i]) continue;
+        if (!has_name(all[k], words_[i])) continue;
         ++i;
         return all[k];
     }
@@ -179,11 +181,11 @@ void Override::apply(Value& scene, const Addressing& addressing) {
             fail(fmt::format("'{}' is {} and has no '{}'", path_text(words_, 0, i),
                              node->describe(), words_[i]));
         }
+        // [fluid] is a list of one: its own name, or 0, may stand before its keys.
         const bool is_last = i + 1 == words_.size();
         Value* next = node->find(words_[i]);
-        const Value* name = node->find("name");
         const bool names_itself =
-            i > 0 && !is_last && !next && name && name->is_string() && name->string() == words_[i];
+            i > 0 && !is_last && !next && (has_name(*node, words_[i]) || words_[i] == "0");
         if (!names_itself) {
             if (!next) {
                 next = &node->set(words_[i], Value(), source_);

@@ -49,6 +49,7 @@ TEST(Override, NeedsNoNameWhereThereIsOnlyOne) {
     }
     EXPECT_EQ(with("[fluid]\nname = \"lava\"", "lava.file=a").find("fluid")->find("file")->string(),
               "a");
+    EXPECT_EQ(with("[fluid]\n", "fluid.0.file=a"), with("[fluid]\n", "file=a"));
     EXPECT_EQ(with("[fluid]\n", "file=a").find("fluid")->find("file")->string(), "a");
 }
 

@@ -138,6 +138,14 @@ T read(const Value& value, const TypedComponent<T>& component) {
     return read(value, component, component.name);
 }
 
+// The same on top of the values that an object has: for presets and editors. Keys that are not in
+// `value` stay; lists are replaced. After an error the object is partly read.
+template <class T>
+void read_into(T& object, const Value& value, const TypedComponent<T>& component,
+               const std::string& path) {
+    read_component(component, &object, value, path);
+}
+
 // The object as a table with all keys that are set; read() of it gives the object again.
 template <class T>
 Value to_value(const T& object, const TypedComponent<T>& component) {

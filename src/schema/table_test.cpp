@@ -38,6 +38,12 @@ TEST(Table, ReadsEveryTypeOfParameter) {
     EXPECT_EQ(std::get<Point>(s.lights.at(1)).position, Vec3d(0, 0, 1));
 }
 
+TEST(Table, ReadingIntoAnObjectKeepsWhatIsNotWritten) {
+    Domain d{7, {1, 2, 3}};
+    read_into(d, parse_toml("resolution = 8", "f"), domain_table(), "domain");
+    EXPECT_EQ(d, (Domain{8, {1, 2, 3}}));
+}
+
 TEST(Table, OneTableIsAListOfOne) {
     EXPECT_EQ(read_scene("[fluid]\nfile = \"x\"").fluids.at(0).file, "x");
 }
@@ -73,7 +79,7 @@ TEST(Table, WrongTypesSayWhatIsExpectedAndWhere) {
     EXPECT_EQ(fluid("domain.resolution = \"a\""),
               at + "21: 'resolution' in [fluid.domain] must be a whole number, not a string");
     EXPECT_EQ(fluid("domain.resolution = 2.5"),
-              at + "21: 'resolution' in [fluid.domain] must be a whole number, not a number");
+              at + "21: 'resolution' in [fluid.domain] must be a whole number, not 2.5");
     EXPECT_EQ(fluid("domain = 5"), at + "10: 'fluid.domain' must be a table, not a whole number");
     EXPECT_EQ(fluid("domain.size = 5"),
               at + "15: 'size' in [fluid.domain] must be 3 numbers, not a whole number");
