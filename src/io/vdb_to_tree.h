@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Tiles to trees of OpenVDB. Part of vdb.cpp, the one file of gischt that includes it.
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/job.h"
+#include "base/parallel.h"
+#include "grid/frame.h"
+
+namespace gischt::vdb_detail {
+
+// The transform that puts index (i,j,k) at the cell's centre, or at its lower corner.
+inline openvdb::math::Transform::Ptr from_transform(const Transform& t, bool half_voxel) {
+    const Vec3d at = half_voxel ? t.point(Vec3d(0.5)) : t.translation;
+    openvdb::Mat4d m = openvdb::Mat4d::identity();
+    for (int r = 0; r < 4; ++r) {
+        const Vec3d row = r < 3 ? t.column[static_cast<std::size_t>(r)] : at;
+        for (int c = 0; c < 3; ++c) m(r, c) = row[c];
+    }
+    // As the simplest kind of map, which is what other programs write and test for.
+    const auto affine = std::make_shared<openvdb::math::AffineMap>(m);
+    return std::make_shared<openvdb::math::Transform>(openvdb::math::simplify(affine));
+}
+
+template <class V>
+V value_at(const Field& field, const auto& get) {
+    if constexpr (openvdb::VecTraits<V>::Size == 3) {
+        return V(get(field.component[0]), get(field.component[1]), get(field.component[2]));
+    } else {
+        return static_cast<V>(get(field.component[0]));
+    }
+}
+
+template <class V>
+V background_of(const Field& field) {
+    if constexpr (openvdb::VecTraits<V>::Size == 3) {
+        return V(field.background[0], field.background[1], field.background[2]);
+    } else {
+        return static_cast<V>(field.background[0]);
+    }
+}
+
+// Origins of the leafs that the field's tiles touch, each once.
+inline std::vector<Vec3i> leaf_origins(const TileMap& map) {
+    std::vector<Vec3i> out;
+    const Vec3i n = map.shape().extent();
+    for (int t = 0; t < map.size(); ++t) {
+        const Vec3i first = map.first_cell(t);
+        for (int j = 0; j < n.y; j += 8) {
+            for (int i = 0; i < n.x; i += 8) {
+                out.emplace_back(first.x + i, first.y + j, first.z & ~7);
+            }
+        }
+    }
+    if (map.shape() != tile_shape_3d) {  // several layers may share a leaf
+        std::ranges::sort(out, [](const Vec3i& a, const Vec3i& b) {
+            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+        });
+        const auto tail = std::ranges::unique(out);
+        out.erase(tail.begin(), tail.end());
+    }
+    return out;
+}
+
+// The leaf at `origin`, or nothing where all values are background. Active are the cells that
+// differ from it, of a level set those of the narrow band. Cells beyond the map's bounds mean
+// nothing and are background.
+template <class Tree>
+std::unique_ptr<typename Tree::LeafNodeType> make_leaf(const Field& field, const Vec3i& origin) {
+    using Leaf = typename Tree::LeafNodeType;
+    using V = typename Tree::ValueType;
+    const V background = background_of<V>(field);
+    const TileMap& map = field.map();
+    const Box3i cells = intersection(Box3i{origin, origin + Vec3i(8)}, map.bounds());
+    const int tile = map.shape() == tile_shape_3d ? map.find(map.shape().tile_of(origin)) : -1;
+    auto leaf = std::make_unique<Leaf>(openvdb::Coord(origin.x, origin.y, origin.z), background);
+    bool is_needed = false;
+    for (int k = cells.lo.z; k < cells.hi.z; ++k) {
+        for (int j = cells.lo.y; j < cells.hi.y; ++j) {
+            for (int i = cells.lo.x; i < cells.hi.x; ++i) {
+                const Vec3i c{i, j, k}, d = c - origin;
+                const V value = value_at<V>(field, [&](const TileField<float>& component) {
+                    return tile < 0 ? component.get(c, 0)
+                                    : component.tile(tile)[tile_shape_3d.index(d.x, d.y, d.z)];
+                });
+                if (value == background) continue;
+                is_needed = true;
+                const auto n = static_cast<openvdb::Index>(d.x << 6 | d.y << 3 | d.z);
+                leaf->setValueOn(n, value);
+                if constexpr (std::is_same_v<V, float>) {
+                    const bool in_band = std::abs(value) < std::abs(background);
+                    if (field.kind == FieldClass::LevelSet && !in_band) leaf->setValueOff(n);
+                }
+            }
+        }
+    }
+    return is_needed ? std::move(leaf) : nullptr;
+}
+
+// Leafs are made in parallel and linked in order.
+template <class Grid>
+typename Grid::Ptr to_tree(const Field& field, Job& job) {
+    using Tree = typename Grid::TreeType;
+    using Leaf = typename Tree::LeafNodeType;
+    auto grid = Grid::create(background_of<typename Tree::ValueType>(field));
+    const std::vector<Vec3i> origins = leaf_origins(field.map());
+    std::vector<std::unique_ptr<Leaf>> leafs(origins.size());
+    parallel_for(static_cast<int>(origins.size()), 64, [&](int l) {
+        const auto i = static_cast<std::size_t>(l);
+        leafs[i] = make_leaf<Tree>(field, origins[i]);
+    });
+    job.check();
+    for (auto& leaf : leafs) {
+        if (leaf) grid->tree().addLeaf(leaf.release());
+    }
+    return grid;
+}
+
+}  // namespace gischt::vdb_detail
