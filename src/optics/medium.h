@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <variant>
+
+#include "grid/brick_volume.h"
+#include "grid/brick_walk.h"
+#include "optics/blackbody.h"
+#include "optics/medium_params.h"
+#include "optics/phase.h"
+#include "shape/shape.h"
+
+namespace gischt {
+
+// Absorption and scattering per unit of density, 1/m, per channel.
+struct CrossSections {
+    Vec3f absorption, scattering;
+    Vec3f extinction() const { return absorption + scattering; }
+};
+
+// What a medium is at a point: coefficients in 1/m and the emitted power per volume and solid angle
+// a L_e, W/(m^3 sr).
+struct MediumPoint {
+    Vec3f absorption, scattering, emission;
+    Vec3f extinction() const { return absorption + scattering; }
+};
+
+// A run of a ray inside a medium with bounds of the extinction of the strongest channel, 1/m. The
+// rest is for the medium's look-ups; a segment may be clipped by moving t0 and t1.
+struct MediumSegment {
+    double t0 = 0, t1 = 0;
+    float min = 0, mean = 0, max = 0;
+
+    double anchor = 0;  // the t from which look-ups count
+    int brick = -1;
+    Vec3i coord;
+    Vec3f entry, step;
+};
+
+class SegmentWalk;
+
+// A participating medium at one moment: extinction, scattering, emission and a phase function as
+// functions of the place. The coefficients are a scalar density(x) >= 0 times constant cross
+// sections. Immutable, safe to use from several threads.
+class Medium {
+  public:
+    // The density field of a frame, and its temperature or flame where that glows. Values below
+    // zero and those that are not finite count as 0; the latter are reported to the job. Throws
+    // Error{Input} when a field is missing, naming those there are.
+    Medium(const Frame& frame, const MediumParams& params, double time, Job& job);
+    // Density 1 inside a solid, nothing outside; planes are refused with Error{Usage}. Emission by
+    // blackbody takes `temperature` in K.
+    Medium(const Shape& shape, const MediumParams& params, double time, double temperature = 0);
+
+    const CrossSections& cross_sections() const { return cross_sections_; }
+    const PhaseFunction& phase() const { return phase_; }
+    const MultipleScattering& multiple_scattering() const { return multiple_scattering_; }
+    bool is_emissive() const { return emission_ != EmissionKind::None; }
+    // Extinction of the strongest channel at density 1, 1/m; segments count in it.
+    float strength() const { return strength_; }
+    // Largest extinction of the strongest channel anywhere, 1/m.
+    float majorant() const { return majorant_; }
+    // Box around all that absorbs, scatters or glows, metres; empty where nothing does.
+    Box3d bounds() const;
+    // Edge of the smallest detail in metres (a voxel), 0 for homogeneous media.
+    double cell_size() const;
+
+    // At a point in metres, for probes; along rays use segments.
+    float density(const Vec3d& point) const;
+    MediumPoint at(const Vec3d& point) const;
+
+    // The runs of a ray through the medium in ascending order; where there is nothing there is no
+    // run. Take it again for every ray.
+    SegmentWalk segments(const Ray& ray) const;
+    // Density at anchor + t[i], which must lie in the segment.
+    void densities(const MediumSegment& segment, std::span<const float> t, float* out) const;
+    // Emission a L_e in W/(m^3 sr) at the same places, `density` being what densities() gave.
+    void emissions(const MediumSegment& segment, std::span<const float> t, const float* density,
+                   Vec3f* out) const;
+
+  private:
+    friend class SegmentWalk;
+
+    struct Bricks {
+        BrickVolume density;
+        std::optional<BrickVolume> glow;  // temperature or flame, on the lattice of density
+    };
+    struct Homogeneous {
+        Shape shape;
+        float temperature = 0;
+    };
+
+    void take(const MediumParams& params, double time);
+    BrickVolume pack(const Frame& frame, const std::string& name, const BrickOptions& options,
+                     const Transform* lattice, Job& job) const;
+    Vec3f glow(float density, float value) const;
+
+    std::variant<Bricks, Homogeneous> kind_;
+    CrossSections cross_sections_;
+    PhaseFunction phase_;
+    MultipleScattering multiple_scattering_;
+    EmissionKind emission_ = EmissionKind::None;
+    float density_scale_ = 1, strength_ = 0, majorant_ = 0, emission_scale_ = 1;
+    Vec2f temperature_range_{0, 1};
+    std::shared_ptr<const BlackbodyTable> blackbody_;
+};
+
+// A pull iterator over the segments of a medium along a ray. The medium must outlive it.
+class SegmentWalk {
+  public:
+    SegmentWalk(const Medium& medium, const Ray& ray);
+    bool next(MediumSegment& segment);
+
+  private:
+    const Medium& medium_;
+    std::optional<BrickWalk> bricks_;
+    MediumSegment once_;  // the single run of a homogeneous medium
+    bool done_ = false;
+};
+
+}  // namespace gischt
