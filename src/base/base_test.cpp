@@ -39,6 +39,22 @@ TEST(Job, CancelStopsAtTheNextCheck) {
     EXPECT_THROW(job.check(), Error);
 }
 
+TEST(JobPart, MapsTheProgressOfAPartIntoTheWhole) {
+    Job job;
+    double last = -1;
+    std::string name;
+    job.on_progress = [&](double f, std::string_view phase) { last = f, name = phase; };
+    {
+        const JobPart outer(job, 0.5, 1, "frame 2");
+        const JobPart inner(job, 0, 0.5, "");
+        job.progress(0.5, "render");
+    }
+    EXPECT_DOUBLE_EQ(last, 0.625);
+    EXPECT_EQ(name, "frame 2: render");
+    job.progress(0.5, "x");
+    EXPECT_DOUBLE_EQ(last, 0.5);
+}
+
 // Chi-squared over 64 bins of 2^16 numbers: 63 degrees of freedom, 99.99 % quantile 113.
 TEST(Random, IsUniformAlongKeysAndDimensions) {
     for (const bool by_key : {true, false}) {

@@ -9,7 +9,10 @@ namespace gischt {
 
 void Job::progress(double fraction, std::string_view phase) {
     const std::scoped_lock lock(mutex_);
-    if (on_progress) on_progress(fraction, phase);
+    if (!on_progress) return;
+    const std::string name =
+        part_name_.empty() ? std::string(phase) : part_name_ + ": " + std::string(phase);
+    on_progress(part_begin_ + fraction * (part_end_ - part_begin_), name);
 }
 
 void Job::message(Level level, std::string_view text) {
@@ -29,6 +32,22 @@ void Job::add_time(std::string_view phase, double seconds) {
 std::map<std::string, double> Job::times() const {
     const std::scoped_lock lock(mutex_);
     return times_;
+}
+
+JobPart::JobPart(Job& job, double begin, double end, std::string_view name)
+    : job_(job), begin_(job.part_begin_), end_(job.part_end_), name_(job.part_name_) {
+    const std::scoped_lock lock(job.mutex_);
+    job.part_begin_ = begin_ + begin * (end_ - begin_);
+    job.part_end_ = begin_ + end * (end_ - begin_);
+    if (!name.empty())
+        job.part_name_ = name_.empty() ? std::string(name) : name_ + ", " + std::string(name);
+}
+
+JobPart::~JobPart() {
+    const std::scoped_lock lock(job_.mutex_);
+    job_.part_begin_ = begin_;
+    job_.part_end_ = end_;
+    job_.part_name_ = name_;
 }
 
 double now_seconds() {

@@ -37,12 +37,31 @@ class Job {
     std::map<std::string, double> times() const;
 
   private:
+    friend class JobPart;
     void message(Level level, std::string_view text);
 
     std::atomic<bool> cancelled_{false};
     static_assert(std::atomic<bool>::is_always_lock_free);
     mutable std::mutex mutex_;
     std::map<std::string, double> times_;
+    double part_begin_ = 0, part_end_ = 1;
+    std::string part_name_;
+};
+
+// While it lives, progress() of the job counts from `begin` to `end` of what it counted before, and
+// names the part before the phase: a sequence gives each of its frames such a part. Parts nest; one
+// thread makes them.
+class JobPart {
+  public:
+    JobPart(Job& job, double begin, double end, std::string_view name);
+    ~JobPart();
+    JobPart(const JobPart&) = delete;
+    JobPart& operator=(const JobPart&) = delete;
+
+  private:
+    Job& job_;
+    double begin_, end_;
+    std::string name_;
 };
 
 // Adds the wall time of a scope to a phase of a job.
