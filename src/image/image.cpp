@@ -72,13 +72,13 @@ const Plane* Image::find(std::string_view channel) const {
     return it == planes.end() ? nullptr : &*it;
 }
 
-std::span<const float> Image::channel(std::string_view name) const {
+std::span<const float> Image::channel(std::string_view name) const& {
     const Plane* plane = find(name);
     if (!plane) throw_missing(*this, name);
     return plane->values;
 }
 
-std::span<float> Image::channel(std::string_view name) {
+std::span<float> Image::channel(std::string_view name) & {
     const Plane* plane = find(name);
     if (!plane) throw_missing(*this, name);
     return planes[static_cast<std::size_t>(plane - planes.data())].values;
@@ -89,7 +89,7 @@ std::span<float> Image::add_channel(std::string_view name) {
     return channel(name);
 }
 
-std::array<std::span<const float>, 3> Image::color(std::string_view layer) const {
+std::array<std::span<const float>, 3> Image::color(std::string_view layer) const& {
     const std::string prefix = layer.empty() ? std::string() : std::string(layer) + ".";
     if (!has(prefix + "R") && has(prefix + "Y")) {
         const auto grey = channel(prefix + "Y");
@@ -98,7 +98,7 @@ std::array<std::span<const float>, 3> Image::color(std::string_view layer) const
     return {channel(prefix + "R"), channel(prefix + "G"), channel(prefix + "B")};
 }
 
-std::array<std::span<float>, 3> Image::color() {
+std::array<std::span<float>, 3> Image::color() & {
     return {channel("R"), channel("G"), channel("B")};
 }
 

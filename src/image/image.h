@@ -56,15 +56,18 @@ struct Image {
     bool has(std::string_view channel) const { return find(channel) != nullptr; }
     // Null when there is no such channel. Linear search: look up once, not per pixel.
     const Plane* find(std::string_view channel) const;
-    // The values of a channel. Throws Error{Input}, naming the channels there are.
-    std::span<float> channel(std::string_view name);
-    std::span<const float> channel(std::string_view name) const;
+    // The values of a channel. Throws Error{Input}, naming the channels there are. Not on a
+    // temporary image, whose values would be gone.
+    std::span<float> channel(std::string_view name) &;
+    std::span<const float> channel(std::string_view name) const&;
+    void channel(std::string_view name) && = delete;
     // A new channel of zeros, or the one of that name if it exists.
     std::span<float> add_channel(std::string_view name);
     // The planes R, G, B, of a layer if one is named ("direct"); one grey channel "Y" stands for
     // all three. Throws Error{Input} when neither is there.
-    std::array<std::span<const float>, 3> color(std::string_view layer = {}) const;
-    std::array<std::span<float>, 3> color();
+    std::array<std::span<const float>, 3> color(std::string_view layer = {}) const&;
+    std::array<std::span<float>, 3> color() &;
+    void color(std::string_view layer = {}) && = delete;
 
     bool operator==(const Image&) const = default;
 };
