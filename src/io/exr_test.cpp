@@ -153,7 +153,8 @@ TEST(Exr, ReadsAFileOfAnotherRenderer) {
     const std::string path = std::string(GISCHT_SOURCE_DIR) +
                              "/../shared/data/images/ref_smoke128_cycles_b32_g0_256spp.exr";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference image";
-    const auto color = read_exr(path).color();
+    const Image image = read_exr(path);
+    const auto color = image.color();
     double sum = 0;
     for (const auto& plane : color) {
         for (const float v : plane) sum += v;
