@@ -277,6 +277,7 @@ struct BrickBuilder {
                           (options.storage == BrickOptions::Storage::Auto && any_float);
         volume.coord_ = candidates;
         volume.blocks_.resize(kept * BrickVolume::brick_blocks);
+        volume.whole_.resize(kept);
         volume.occupied_.resize(kept);
         volume.decode_.resize(kept);
         (full ? volume.full_.resize(kept * BrickVolume::samples)
@@ -322,6 +323,8 @@ struct BrickBuilder {
         unsigned occupied = other >= 0 ? options.also->occupied(other) : 0u;
         const Survey& s = surveys[static_cast<std::size_t>(b)];
         const float rounding = 1e-6f * std::max(std::abs(s.min), std::abs(s.max));
+        BrickVolume::Block whole{std::numeric_limits<float>::max(), 0,
+                                 std::numeric_limits<float>::lowest()};
         for (int i = 0; i < BrickVolume::brick_blocks; ++i) {
             BrickVolume::Block block = block_of(samples, i);
             if (block.min != reader.background || block.max != reader.background) {
@@ -333,7 +336,11 @@ struct BrickBuilder {
                 block.max += rounding;
             }
             volume.blocks_[static_cast<std::size_t>(b * BrickVolume::brick_blocks + i)] = block;
+            whole.min = std::min(whole.min, block.min);
+            whole.mean += block.mean / BrickVolume::brick_blocks;
+            whole.max = std::max(whole.max, block.max);
         }
+        volume.whole_[static_cast<std::size_t>(b)] = whole;
         volume.occupied_[static_cast<std::size_t>(b)] = static_cast<std::uint8_t>(occupied);
     }
 

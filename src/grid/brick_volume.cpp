@@ -33,7 +33,8 @@ float trilinear(const T* s, const Vec3f& f) {
 
 std::size_t BrickVolume::bytes() const {
     return compact_.size() * sizeof(std::uint16_t) + full_.size() * sizeof(float) +
-           blocks_.size() * sizeof(Block) + coord_.size() * (sizeof(Vec3i) + sizeof(Vec2f) + 1) +
+           (blocks_.size() + whole_.size()) * sizeof(Block) +
+           coord_.size() * (sizeof(Vec3i) + sizeof(Vec2f) + 1) +
            (pages_.size() + table_.size()) * sizeof(std::int32_t);
 }
 
@@ -76,11 +77,6 @@ float BrickVolume::at_local(int brick, const Vec3f& local) const {
     if (!is_compact()) return trilinear(full_.data() + first, f);
     const Vec2f d = decode_[static_cast<std::size_t>(brick)];
     return d.x + d.y * trilinear(compact_.data() + first, f);
-}
-
-void BrickVolume::along(int brick, const Vec3f& entry, const Vec3f& step, const float* t, int n,
-                        float* out) const {
-    for (int i = 0; i < n; ++i) out[i] = at_local(brick, entry + t[i] * step);
 }
 
 }  // namespace gischt

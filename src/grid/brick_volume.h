@@ -13,6 +13,15 @@ namespace gischt {
 
 class BrickVolume;
 
+// Points entry + t[i] step of one brick, for the look-up of many at once; a value is offset + scale
+// times the stored number.
+struct BrickLine {
+    Vec3f entry, step;
+    float offset, scale;
+    const float* t;
+    int count;
+};
+
 // How a field is packed.
 struct BrickOptions {
     enum class Storage {
@@ -82,6 +91,8 @@ class BrickVolume {
     const Block& block(int brick, int b) const {
         return blocks_[static_cast<std::size_t>(brick * brick_blocks + b)];
     }
+    // Over the whole brick.
+    const Block& whole(int brick) const { return whole_[static_cast<std::size_t>(brick)]; }
     // Bit b: block b differs from the background (or is kept for `also`).
     unsigned occupied(int brick) const { return occupied_[static_cast<std::size_t>(brick)]; }
     // Over all blocks.
@@ -109,7 +120,7 @@ class BrickVolume {
     Box3i brick_bounds_{}, support_{}, page_box_{};
     std::vector<std::int32_t> pages_, table_;
     std::vector<Vec3i> coord_;
-    std::vector<Block> blocks_;
+    std::vector<Block> blocks_, whole_;
     std::vector<std::uint8_t> occupied_;
     std::vector<Vec2f> decode_;             // per brick: offset, scale
     AlignedVector<std::uint16_t> compact_;  // `samples` per brick, x fastest, then y, then z

@@ -6,131 +6,146 @@
 
 namespace gischt {
 
-BrickWalk::BrickWalk(const BrickVolume& volume, const Ray& world) : volume_(volume) {
+static constexpr double never = std::numeric_limits<double>::infinity();
+static constexpr int edge = BrickVolume::brick_edge;
+
+BrickWalk::BrickWalk(const BrickVolume& volume, const Ray& world, BrickGrain grain)
+    : volume_(volume), grain_(grain) {
     if (volume.size() == 0) return;
-    origin_ = volume.to_lattice().point(world.origin);
-    direction_ = volume.to_lattice().vector(world.direction);
+    const Vec3d o = volume.to_lattice().point(world.origin);
+    Vec3d d = volume.to_lattice().vector(world.direction);
     // A component this small would not move the ray by a cell before it is out of sight.
-    const double least = 1e-20 * max_component(abs(direction_));
+    const double least = 1e-20 * max_component(abs(d));
     for (int a = 0; a < 3; ++a) {
-        if (std::abs(direction_[a]) <= least) direction_[a] = 0;
+        const auto i = static_cast<std::size_t>(a);
+        if (std::abs(d[a]) <= least) d[a] = 0;
+        origin_[i] = o[a];
+        direction_[i] = d[a];
+        inverse_[i] = 1 / d[a];
+        sign_[i] = d[a] > 0 ? 1 : d[a] < 0 ? -1 : 0;
     }
-    step_ = Vec3f(direction_);
-    for (int a = 0; a < 3; ++a) {
-        inverse_[a] = 1 / direction_[a];
-        direction_sign_[a] = direction_[a] > 0 ? 1 : direction_[a] < 0 ? -1 : 0;
-    }
+    step_ = Vec3f(d);
     const Box3i& support = volume.support();
-    const Interval inside = clip({origin_, direction_, world.t_min, world.t_max},
-                                 {Vec3d(support.lo), Vec3d(support.hi)});
-    if (inside.is_empty()) return;
+    const Interval inside =
+        clip({o, d, world.t_min, world.t_max}, {Vec3d(support.lo), Vec3d(support.hi)});
+    if (!inside.is_empty()) start(inside);
+}
+
+// Finds the first brick. Rounding may put the entry point beside it, and a ray that lies in a face
+// belongs to the bricks above.
+void BrickWalk::start(const Interval& inside) {
     t_ = inside.t0;
     t_end_ = inside.t1;
-
-    // The first brick; rounding may put the entry point beside it, and a ray that lies in a face
-    // belongs to the bricks above.
-    constexpr int edge = BrickVolume::brick_edge;
-    const Vec3d q = origin_ + t_ * direction_;
-    for (int a = 0; a < 3; ++a) {
-        const int first = support.lo[a] >> 3, last = (support.hi[a] - 1) >> 3;
-        coord_[a] = std::clamp(static_cast<int>(std::floor(q[a] / edge)), first, last);
+    const Box3i& support = volume_.support();
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int axis = static_cast<int>(a);
+        const int first = support.lo[axis] >> 3, last = (support.hi[axis] - 1) >> 3;
+        const double q = origin_[a] + t_ * direction_[a];
+        coord_[a] = std::clamp(static_cast<int>(std::floor(q / edge)), first, last);
+        leave_[a] = sign_[a] == 0
+                        ? never
+                        : crossing(a, static_cast<double>(edge * (coord_[a] + (sign_[a] > 0))));
     }
     leave_brick();
 }
 
-// Finds where the brick at coord_ ends.
+// Finds through which face the ray leaves the brick at coord_.
 void BrickWalk::leave_brick() {
-    constexpr int edge = BrickVolume::brick_edge;
-    t_leave_ = never;
-    for (int a = 0; a < 3; ++a) {
-        if (direction_sign_[a] == 0) continue;
-        const double t = crossing(a, double{edge} * (coord_[a] + (direction_sign_[a] > 0)));
-        if (t < t_leave_) {
-            t_leave_ = t;
-            leave_axis_ = a;
-        }
-    }
-    t_leave_ = std::min(t_leave_, t_end_);
+    leave_axis_ = leave_[0] <= leave_[1] ? (leave_[0] <= leave_[2] ? 0 : 2)
+                                         : (leave_[1] <= leave_[2] ? 1 : 2);
+    t_leave_ = std::min(leave_[leave_axis_], t_end_);
+}
+
+void BrickWalk::next_brick() {
+    t_ = std::max(t_, t_leave_);
+    const std::size_t a = leave_axis_;
+    coord_[a] += sign_[a];
+    leave_[a] = sign_[a] == 0
+                    ? never
+                    : crossing(a, static_cast<double>(edge * (coord_[a] + (sign_[a] > 0))));
+    leave_brick();
 }
 
 // Steps on until a stored brick; false at the end of the walk.
 bool BrickWalk::enter_brick() {
-    while (t_ < t_end_) {
-        brick_ = volume_.find(coord_);
-        if (brick_ >= 0 && t_ < t_leave_) {
-            split_brick();
-            return true;
-        }
-        t_ = std::max(t_, t_leave_);
-        coord_[leave_axis_] += direction_sign_[leave_axis_];
-        leave_brick();
+    for (; t_ < t_end_; next_brick()) {
+        brick_ = t_ < t_leave_ ? volume_.find({coord_[0], coord_[1], coord_[2]}) : -1;
+        if (brick_ >= 0) return true;
     }
     return false;
 }
 
 // Cuts the ray's part of the brick at the three planes through its middle.
 void BrickWalk::split_brick() {
-    const Vec3d base = Vec3d(coord_ * BrickVolume::brick_edge);
     int block = 0;
     struct Crossing {
         double t;
-        int axis;
+        int bit;
     };
     std::array<Crossing, 3> cross;
     std::size_t crossings = 0;
-    for (int a = 0; a < 3; ++a) {
-        const double middle = base[a] + 4;
-        if (direction_sign_[a] == 0) {
-            block |= (origin_[a] >= middle) << a;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int bit = 1 << a;
+        const double middle = edge * coord_[a] + edge / 2;
+        if (sign_[a] == 0) {
+            if (origin_[a] >= middle) block |= bit;
             continue;
         }
         // Before the crossing a ray that ascends is in the lower half.
         const double t = crossing(a, middle);
         const bool crossed = t <= t_;
-        block |= (crossed == (direction_sign_[a] > 0)) << a;
+        if (crossed == (sign_[a] > 0)) block |= bit;
         if (!crossed && t < t_leave_) {
             std::size_t at = crossings++;
             for (; at > 0 && cross[at - 1].t > t; --at) cross[at] = cross[at - 1];
-            cross[at] = {t, a};
+            cross[at] = {t, bit};
         }
     }
-    cuts_ = cut_at_ = 0;
+    cuts_ = 0;
     cut_[0] = t_;
     for (std::size_t c = 0; c < crossings; ++c) {
-        const auto [t, axis] = cross[c];
-        if (t > cut_[static_cast<std::size_t>(cuts_)]) {
-            cut_block_[static_cast<std::size_t>(cuts_++)] = block;
-            cut_[static_cast<std::size_t>(cuts_)] = t;
+        if (cross[c].t > cut_[cuts_]) {
+            cut_block_[cuts_++] = block;
+            cut_[cuts_] = cross[c].t;
         }
-        block ^= 1 << axis;
+        block ^= cross[c].bit;
     }
-    cut_block_[static_cast<std::size_t>(cuts_++)] = block;
-    cut_[static_cast<std::size_t>(cuts_)] = t_leave_;
+    cut_block_[cuts_++] = block;
+    cut_[cuts_] = t_leave_;
 }
 
-bool BrickWalk::next(BlockRun& run) {
+void BrickWalk::fill(BrickRun& run, double t0, double t1) const {
+    run.t0 = t0;
+    run.t1 = t1;
+    run.brick = brick_;
+    run.coord = {coord_[0], coord_[1], coord_[2]};
+    const auto local = [&](std::size_t a) {
+        return static_cast<float>(origin_[a] + t0 * direction_[a] - edge * coord_[a]);
+    };
+    run.entry = {local(0), local(1), local(2)};
+}
+
+bool BrickWalk::next(BrickRun& run) {
+    if (grain_ == BrickGrain::Bricks) {
+        if (!enter_brick()) return false;
+        fill(run, t_, t_leave_);
+        run.bounds = volume_.whole(brick_);
+        next_brick();
+        return true;
+    }
     for (;;) {
-        while (cut_at_ < cuts_) {
-            const auto c = static_cast<std::size_t>(cut_at_++);
-            const int block = cut_block_[c];
+        for (; cut_at_ < cuts_; ++cut_at_) {
+            const int block = cut_block_[cut_at_];
             if (!(volume_.occupied(brick_) >> block & 1)) continue;
-            run.t0 = cut_[c];
-            run.t1 = cut_[c + 1];
+            fill(run, cut_[cut_at_], cut_[cut_at_ + 1]);
             run.bounds = volume_.block(brick_, block);
-            run.brick = brick_;
-            run.coord = coord_;
-            run.entry =
-                Vec3f(origin_ + run.t0 * direction_ - Vec3d(coord_ * BrickVolume::brick_edge));
+            ++cut_at_;
             return true;
         }
-        if (cuts_ > 0) {
-            // Done with this brick.
-            cuts_ = cut_at_ = 0;
-            t_ = std::max(t_, t_leave_);
-            coord_[leave_axis_] += direction_sign_[leave_axis_];
-            leave_brick();
-        }
+        if (cuts_ > 0) next_brick();
+        cuts_ = cut_at_ = 0;
         if (!enter_brick()) return false;
+        split_brick();
     }
 }
 

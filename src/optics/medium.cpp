@@ -148,8 +148,8 @@ Vec3f Medium::glow(float density, float value) const {
     return density * cross_sections_.absorption * radiance;
 }
 
-SegmentWalk Medium::segments(const Ray& ray) const {
-    return SegmentWalk(*this, ray);
+SegmentWalk Medium::segments(const Ray& ray, BrickGrain grain) const {
+    return SegmentWalk(*this, ray, grain);
 }
 
 void Medium::densities(const MediumSegment& segment, std::span<const float> t, float* out) const {
@@ -181,9 +181,9 @@ void Medium::emissions(const MediumSegment& segment, std::span<const float> t, c
     }
 }
 
-SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray) : medium_(medium) {
+SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain) : medium_(medium) {
     if (const auto* b = std::get_if<Medium::Bricks>(&medium.kind_)) {
-        bricks_.emplace(b->density, ray);
+        bricks_.emplace(b->density, ray, grain);
         return;
     }
     const auto& solid = std::get<Medium::Homogeneous>(medium.kind_);
@@ -201,7 +201,7 @@ bool SegmentWalk::next(MediumSegment& segment) {
         segment = once_;
         return done_ = true;
     }
-    BlockRun run;
+    BrickRun run;
     if (!bricks_->next(run)) return false;
     const float scale = medium_.strength_ * medium_.density_scale_;
     segment.t0 = segment.anchor = run.t0;

@@ -73,8 +73,8 @@ class Medium {
     MediumPoint at(const Vec3d& point) const;
 
     // The runs of a ray through the medium in ascending order; where there is nothing there is no
-    // run. Take it again for every ray.
-    SegmentWalk segments(const Ray& ray) const;
+    // run. Fine runs (4^3 voxels) have tight bounds, coarse ones (8^3) are half as many.
+    SegmentWalk segments(const Ray& ray, BrickGrain grain = BrickGrain::Blocks) const;
     // Density at anchor + t[i], which must lie in the segment.
     void densities(const MediumSegment& segment, std::span<const float> t, float* out) const;
     // Emission a L_e in W/(m^3 sr) at the same places, `density` being what densities() gave.
@@ -111,7 +111,7 @@ class Medium {
 // A pull iterator over the segments of a medium along a ray. The medium must outlive it.
 class SegmentWalk {
   public:
-    SegmentWalk(const Medium& medium, const Ray& ray);
+    SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain);
     bool next(MediumSegment& segment);
 
   private:

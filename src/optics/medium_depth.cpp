@@ -12,7 +12,7 @@ namespace {
 double segment_integral(const Medium& medium, const MediumSegment& s, double step_t,
                         std::int64_t* lookups) {
     const double length = s.t1 - s.t0;
-    constexpr int most = 32;  // a block's diagonal is 7 cells
+    constexpr int most = 32;  // a brick's diagonal is 14 cells
     const int n = std::clamp(static_cast<int>(std::ceil(length / step_t)), 1, most);
     std::array<float, most> t, density;
     const double ds = length / n;
@@ -37,7 +37,7 @@ float density_integral(const Medium& medium, const Ray& ray, const DepthSteps& s
     const float strength = medium.strength();
     if (strength == 0) return 0;
     const double enough = static_cast<double>(steps.enough) / static_cast<double>(strength);
-    SegmentWalk walk = medium.segments(ray);
+    SegmentWalk walk = medium.segments(ray, BrickGrain::Bricks);
     MediumSegment s;
     double sum = 0;
     while (walk.next(s)) {
