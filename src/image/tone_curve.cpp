@@ -14,9 +14,9 @@ namespace {
 
 constexpr double middle_grey = 0.18;  // in and out: exposure 0 keeps the brightness of a picture
 constexpr double white = 16;          // 6.5 stops above: sunlit clouds beside smoke in the shade
-constexpr float contrast = 1.3f;      // exponent in the shadows; film is 1.2 to 1.6
+constexpr float contrast = 1.4f;      // exponent in the shadows; at middle grey 1.13 is left
 constexpr float shoulder = 0.985f;    // below 1; nearer to 1 is a longer, softer shoulder
-constexpr float leak = 0.12f;         // share of the other channels before the curve
+constexpr float leak = 0.10f;         // share of the other channels before the curve
 constexpr float leak_back = 0.08f;    // and taken out after it
 
 Vec3f toward_grey(const Vec3f& c, float share) {
