@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "base/error.h"
+#include "command.h"
+#include "io/image_file.h"
+#include "io/vdb.h"
+#include "scene/load.h"
+#include "studio/cache.h"
+
+namespace gischt {
+namespace fs = std::filesystem;
+namespace {
+
+void print_volume(const std::string& path, Job& job) {
+    const VdbInfo info = list_vdb(path, job);
+    fmt::print("{}: OpenVDB file, format {}, library {}\n", path, info.format, info.library);
+    for (const auto& [key, value] : info.metadata) fmt::print("  {} = {}\n", key, value);
+    for (const VdbGridInfo& g : info.grids) {
+        fmt::print("  {:<14} {}{}, {}, {} active voxels", g.name, g.type,
+                   g.is_half ? " (half)" : "", g.grid_class, g.active_voxels);
+        if (g.active_voxels > 0) {
+            fmt::print(", {}x{}x{} at {:g} m", g.hi[0] - g.lo[0] + 1, g.hi[1] - g.lo[1] + 1,
+                       g.hi[2] - g.lo[2] + 1, g.voxel_size[0]);
+        }
+        if (g.min <= g.max) fmt::print(", {:g} to {:g}", g.min, g.max);
+        fmt::print("{}\n", g.is_readable ? "" : "; left out: " + g.note);
+    }
+}
+
+void print_image(const std::string& path) {
+    const Image image = read_image(path);
+    fmt::print("{}: {}x{}, channels", path, image.width, image.height);
+    for (const Plane& p : image.planes) fmt::print(" {}", p.name);
+    fmt::print("\n");
+    for (const auto& [key, value] : image.metadata.entries) fmt::print("  {} = {}\n", key, value);
+}
+
+void print_scene(const std::string& target) {
+    const LoadedScene s = load_scene(target, "", {});
+    fmt::print("{}: {}\n", s.name, s.scene.description);
+    fmt::print("  frames {} to {} at {:g} per second, {} fluids, {} solids, {} lights\n",
+               s.scene.frames.x, s.scene.frames.y, s.scene.fps, s.scene.fluids.size(),
+               s.scene.solids.size(), s.scene.lights.size());
+    fmt::print("  {}x{} pixels by {}, scene hash {}\n", s.scene.film.width, s.scene.film.height,
+               s.scene.render.method, s.hash);
+}
+
+void print_cache(const fs::path& folder) {
+    const LoadedScene scene = load_scene((folder / "scene.toml").string(), "", {});
+    fmt::print("{}: frames of the scene {}\n", folder.string(), cache_name(folder));
+    const std::vector<std::string> names = fluid_names(scene.scene);
+    for (std::size_t f = 0; f < names.size(); ++f) {
+        int count = 0;
+        std::uintmax_t bytes = 0;
+        for (const fs::directory_entry& e : fs::directory_iterator(folder)) {
+            if (e.path().extension() != ".vdb" ||
+                !e.path().stem().string().starts_with(names[f] + "_"))
+                continue;
+            ++count;
+            bytes += e.file_size();
+        }
+        fmt::print("  {:<14} {} frames, {:.1f} MB\n", names[f], count,
+                   static_cast<double>(bytes) * 1e-6);
+    }
+}
+
+int print_info(const std::string& target, Job& job) {
+    const std::string extension = fs::path(target).extension().string();
+    if (extension == ".vdb" || extension == ".nvdb")
+        print_volume(target, job);
+    else if (is_image_file(target))
+        print_image(target);
+    else if (is_cache(target))
+        print_cache(target);
+    else
+        print_scene(target);
+    return 0;
+}
+
+}  // namespace
+
+// gischt info FILE
+void add_info(CLI::App& app, CommandContext& context) {
+    auto target = std::make_shared<std::string>();
+    CLI::App* sub = app.add_subcommand("info", "What is in a .vdb, an image, a cache or a scene");
+    sub->add_option("FILE", *target, "A .vdb, .exr, .png or .hdr file, a cache folder, or a scene")
+        ->required();
+    sub->callback([target, &context] {
+        context.action = [target, &context] { return print_info(*target, context.job); };
+    });
+}
+
+}  // namespace gischt

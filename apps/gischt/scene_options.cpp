@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+
+#include "base/error.h"
+#include "scene/bare.h"
+#include "scene/preset.h"
+
+namespace gischt {
+namespace fs = std::filesystem;
+namespace {
+
+// Two whole numbers with a letter between them: 640x360, 0:16.
+std::pair<int, int> parse_pair(const std::string& text, char between, const char* flag) {
+    int a = 0, b = 0;
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, a);
+    if (first.ec == std::errc() && first.ptr != end && *first.ptr == between) {
+        const auto second = std::from_chars(first.ptr + 1, end, b);
+        if (second.ec == std::errc() && second.ptr == end) return {a, b};
+    }
+    throw Error(ErrorKind::Usage, flag, fmt::format("'{}' is not of the form A{}B", text, between));
+}
+
+// Seconds of "90", "90s", "10m", "2h".
+double parse_time(const std::string& text) {
+    double number = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, number);
+    const std::string unit(rest, end);
+    const double factor = unit.empty() || unit == "s" ? 1
+                          : unit == "m"               ? 60
+                          : unit == "h"               ? 3600
+                                                      : 0;
+    if (error != std::errc() || factor == 0 || !(number > 0)) {
+        throw Error(ErrorKind::Usage, "--time", fmt::format("'{}' is no time", text),
+                    "write 90s, 10m or 2h");
+    }
+    return number * factor;
+}
+
+std::vector<std::string> overrides_of(const SceneOptions& o, const CommandContext& context) {
+    std::vector<std::string> sets;
+    if (o.preview) sets = {"render.spp=1"};
+    sets.insert(sets.end(), context.sets.begin(), context.sets.end());
+    if (!o.method.empty()) sets.push_back("render.method=" + o.method);
+    if (o.spp) sets.push_back(fmt::format("render.spp={}", *o.spp));
+    if (o.seed) sets.push_back(fmt::format("seed={}", *o.seed));
+    if (o.exposure) sets.push_back(fmt::format("film.exposure={}", *o.exposure));
+    if (!o.samples.empty()) {
+        const auto [first, last] = parse_pair(o.samples, ':', "--samples");
+        if (first < 0 || last <= first)
+            throw Error(ErrorKind::Usage, "--samples", "A:B needs 0 <= A < B");
+        sets.push_back(fmt::format("render.spp={}", last - first));
+    }
+    if (!o.size.empty()) {
+        const auto [width, height] = parse_pair(o.size, 'x', "--size");
+        sets.push_back(fmt::format("film.width={}", width));
+        sets.push_back(fmt::format("film.height={}", height));
+    }
+    return sets;
+}
+
+bool looks_like_volume(const std::string& target) {
+    const std::string extension = fs::path(target).extension().string();
+    return extension == ".vdb" || extension == ".nvdb";
+}
+
+Order order_of(const SceneOptions& o, const CommandContext& context) {
+    Order order;
+    order.turntable = o.turntable.value_or(0);
+    order.noise = o.noise.value_or(0);
+    if (!o.time.empty()) order.time_limit = parse_time(o.time);
+    if (!o.samples.empty()) order.first_sample = parse_pair(o.samples, ':', "--samples").first;
+    order.preview = o.preview;
+    order.restart = o.restart;
+    order.command = context.command_line;
+    if (!o.cache.empty()) order.cache = o.cache;
+    return order;
+}
+
+}  // namespace
+
+ResolvedOptions resolve(const SceneOptions& options, CommandContext& context) {
+    ResolvedOptions r;
+    const std::vector<std::string> sets = overrides_of(options, context);
+    r.order = order_of(options, context);
+    if (!options.frames.empty()) r.order.frames = parse_frame_range(options.frames);
+    if (looks_like_volume(options.target)) {
+        BareRequest request;
+        request.file = options.target;
+        request.preset = options.preset;
+        request.frame = r.order.frames.first;
+        request.overrides = sets;
+        request.exposure_given = options.exposure.has_value();
+        r.scene = load_bare(request, context.job);
+        r.is_bare = true;
+    } else if (is_cache(options.target)) {
+        r.scene =
+            load_scene((fs::path(options.target) / "scene.toml").string(), options.preset, sets);
+        r.scene.name = cache_name(options.target);
+        r.order.cache = options.target;
+        r.is_cache = true;
+    } else {
+        r.scene = load_scene(options.target, options.preset, sets);
+    }
+    if (options.frames.empty())
+        r.order.frames = {r.scene.scene.frames.x, r.scene.scene.frames.y, 1};
+    return r;
+}
+
+std::string picture_path(const std::string& output, const std::string& name) {
+    const fs::path path(output);
+    return path.has_extension() ? output : (path / (name + ".png")).string();
+}
+
+void finish_statistics(const RunStatistics& run, const CommandContext& context, double start) {
+    if (!context.stats_file.empty())
+        write_statistics(context.stats_file, run, context.job, now_seconds() - start);
+}
+
+void add_scene_flags(CLI::App& app, SceneOptions& o, bool pictures) {
+    app.add_option("--frames", o.frames, "Which frames")->type_name("A-B[xSTEP]");
+    app.add_option("--seed", o.seed, "Another seed gives other random numbers");
+    app.add_flag("--restart", o.restart, "Throw away cached frames and start anew");
+    app.add_flag("--resume", o.resume, "Use cached frames and go on where they stop (the default)");
+    app.add_flag("--preview", o.preview,
+                 "The fastest method that shows the motion; coarser numbers, the same scene");
+    if (!pictures) return;
+    app.add_option("--method", o.method, "Render method, see `gischt methods`");
+    app.add_option("--size", o.size, "Size of the picture in pixels")->type_name("WxH");
+    app.add_option("--spp", o.spp, "Samples per pixel");
+    app.add_option("--samples", o.samples, "Range of sample indices, half-open")->type_name("A:B");
+    app.add_option("--noise", o.noise, "Stop at this estimated relative noise")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--time", o.time, "Stop after this time per picture: 90s, 10m, 2h");
+    app.add_option("--preset", o.preset, "A look for any volume: smoke, fire, cloud, steam, fog");
+    app.add_option("--exposure", o.exposure, "Brightness of PNG and MP4 in stops")->type_name("EV");
+}
+
+}  // namespace gischt

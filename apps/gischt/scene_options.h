@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "studio/production.h"
+
+namespace gischt {
+
+// The flags of sub-commands that work on a scene, as typed.
+struct SceneOptions {
+    std::string target;  // scene file, built-in scene, .vdb file or pattern, cache folder
+    std::vector<std::string> outputs;
+    std::string method, preset, frames, size, samples, time, cache;
+    std::optional<int> spp, turntable;
+    std::optional<double> exposure, noise;
+    std::optional<std::int64_t> seed;
+    bool preview = false, restart = false, resume = false;
+};
+
+// Declares the flags: what is simulated, and with `pictures` also how it is looked at.
+void add_scene_flags(CLI::App& app, SceneOptions& options, bool pictures);
+
+// What the flags and the target mean.
+struct ResolvedOptions {
+    LoadedScene scene;
+    Order order;
+    bool is_bare = false;   // the target is a volume without a scene
+    bool is_cache = false;  // the target is a cache folder: order.cache
+};
+ResolvedOptions resolve(const SceneOptions& options, CommandContext& context);
+
+// The folder or pattern that `-o` means for pictures: "DIR" and "DIR/" become DIR/NAME.png.
+std::string picture_path(const std::string& output, const std::string& name);
+
+// Writes --stats where it was asked for.
+void finish_statistics(const RunStatistics& run, const CommandContext& context, double start);
+
+}  // namespace gischt

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "base/job.h"
+#include "grid/frame.h"
+#include "io/vdb.h"
+#include "schema/table.h"
+
+namespace gischt {
+
+// A fluid that was made elsewhere: one VDB file, or one per frame.
+struct FileParams {
+    std::string file;  // '####' or '%04d' stands for the frame number; a name with a number that
+                       // exists stands for itself
+    int frame_offset = 0;  // added to the scene's frame number
+    HalfVoxel half_voxel = HalfVoxel::Auto;
+};
+
+const Table<FileParams>& file_table();
+
+// The file of a frame: the pattern filled in. Where the file is not there, the path all the same.
+std::string file_of_frame(const FileParams& params, int frame);
+
+// Reads the frame. Throws as read_vdb().
+Frame read_file_frame(const FileParams& params, int frame, Job& job);
+
+}  // namespace gischt

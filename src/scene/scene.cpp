@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene.h"
+
+#include "base/units.h"
+#include "schema/doc.h"
+
+namespace gischt {
+namespace {
+
+const Table<FluidCommon>& common_table() {
+    using P = FluidCommon;
+    static const Table<P> table =
+        Table<P>("fluid", "What every fluid has")
+            .add("name", &P::name, {.help = "Names the fluid in --set and in file names"})
+            .sub("medium", &P::medium, medium_table(), {.help = "What the fluid does to light"})
+            .add("translate", &P::translate,
+                 {.unit = "m", .help = "Moves the fluid when it is looked at"})
+            .add("rotate_degrees", &P::rotate_degrees,
+                 {.unit = "degrees",
+                  .help = "Turns the fluid about the origin: around x, then y, then z"})
+            .add("scale", &P::scale,
+                 {.help = "Scales the fluid about the origin", .min = 0, .min_open = true});
+    return table;
+}
+
+// The keys of a source and those of every fluid, in one table.
+template <class P>
+const Table<FluidOf<P>>& fluid_table(const Table<P>& source) {
+    static const Table<FluidOf<P>> table = Table<FluidOf<P>>(source.name, source.help)
+                                               .flat(&FluidOf<P>::common, common_table())
+                                               .flat(&FluidOf<P>::source, source);
+    return table;
+}
+
+const Variants<FluidSection>& fluid_variants() {
+    static const Variants<FluidSection> variants =
+        Variants<FluidSection>("fluid",
+                               "A fluid: where its motion comes from and what it does to light")
+            .add("smoke", fluid_table(smoke_table()))
+            .add("file", fluid_table(file_table()))
+            .add("cloud", fluid_table(cloud_table()));
+    return variants;
+}
+
+const Table<FilmParams>& film_table() {
+    using P = FilmParams;
+    static const Table<P> table =
+        Table<P>("film", "The picture: its size and how radiance becomes a PNG or a movie")
+            .add("width", &P::width, {.unit = "pixels", .help = "Width", .min = 1, .max = 65536})
+            .add("height", &P::height, {.unit = "pixels", .help = "Height", .min = 1, .max = 65536})
+            .add("exposure", &P::exposure,
+                 {.unit = "stops", .help = "Brightness of PNG and MP4; EXR holds radiance"})
+            .choice("tone", &P::tone,
+                    {{"filmic", ToneKind::Filmic, "soft highlights"},
+                     {"linear", ToneKind::Linear, "clips at 1"}},
+                    {.help = "Tone curve of PNG and MP4"})
+            .choice("filter", &P::filter,
+                    {{"box", FilterKind::Box},
+                     {"gaussian", FilterKind::Gaussian},
+                     {"mitchell", FilterKind::Mitchell},
+                     {"blackman_harris", FilterKind::BlackmanHarris}},
+                    {.help = "Reconstruction filter"})
+            .add("filter_radius", &P::filter_radius,
+                 {.unit = "pixels",
+                  .help = "Radius of the filter; 0 takes the filter's own",
+                  .min = 0,
+                  .max = 16});
+    return table;
+}
+
+const Table<RenderSection>& render_table() {
+    using P = RenderSection;
+    static const Table<P> table =
+        Table<P>("render", "How the picture is made; each method has a table of its own below")
+            .add("method", &P::method, {.help = "One of the names that `gischt methods` lists"})
+            .add("spp", &P::spp, {.help = "Samples per pixel", .min = 1, .max = 1 << 24})
+            .add("depth", &P::depth,
+                 {.help = "Most scattering events of a light path", .min = 1, .max = 1 << 20})
+            .flat(&P::methods, render_params_table());
+    return table;
+}
+
+void check_scene(const Scene& s, const Fail& fail) {
+    if (s.frames.x > s.frames.y) fail("frames", "must be [first, last] with first at most last");
+    if (s.frames.x < 0) fail("frames", "must not start below 0");
+    const auto methods = render_methods();
+    std::vector<std::string> names;
+    for (const MethodInfo& m : methods) names.emplace_back(m.name);
+    if (std::ranges::find(names, s.render.method) == names.end()) {
+        fail("render", "has no method '" + s.render.method + "'", hint_for(s.render.method, names));
+    }
+}
+
+}  // namespace
+
+Transform FluidCommon::placement() const {
+    Transform t = Transform::scale_translate(scale, {});
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3d e;
+        e[axis] = 1;
+        t = Transform::rotation(e, radians(rotate_degrees[axis])) * t;
+    }
+    t.translation = translate;
+    return t;
+}
+
+FluidCommon& common_of(FluidSection& fluid) {
+    return std::visit([](auto& f) -> FluidCommon& { return f.common; }, fluid);
+}
+
+const FluidCommon& common_of(const FluidSection& fluid) {
+    return std::visit([](const auto& f) -> const FluidCommon& { return f.common; }, fluid);
+}
+
+const Table<Scene>& scene_table() {
+    using P = Scene;
+    static const Table<P> table =
+        Table<P>("scene", "A world to simulate and look at: the top level of a scene file")
+            .add("description", &P::description, {.help = "One line for `gischt scenes`"})
+            .choice("up", &P::up, {{"z", UpAxis::Z}, {"y", UpAxis::Y}},
+                    {.help = "The axis that points up"})
+            .add("fps", &P::fps,
+                 {.unit = "1/s", .help = "Frames per second", .min = 0, .min_open = true})
+            .add("frames", &P::frames, {.help = "First and last frame"})
+            .add("seed", &P::seed, {.help = "Another seed gives other random numbers", .min = 0})
+            .add("gravity", &P::gravity,
+                 {.unit = "m/s^2", .help = "Acceleration of gravity; by default 9.80665 downwards"})
+            .list("fluid", &P::fluids, fluid_variants(), {.help = "The fluids"})
+            .list("solid", &P::solids, surface_variants(),
+                  {.help = "Solids: seen by the camera, casting shadows, and in the way of "
+                           "simulated fluids"})
+            .list("light", &P::lights, light_variants(), {.help = "The lights"})
+            .sub("camera", &P::camera, camera_table(),
+                 {.help = "The camera; without it the fluids are framed"})
+            .sub("film", &P::film, film_table(), {.help = "The picture"})
+            .sub("render", &P::render, render_table(), {.help = "How the picture is made"})
+            .check(check_scene);
+    return table;
+}
+
+}  // namespace gischt

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/world.h"
+
+#include <cmath>
+#include <optional>
+
+#include "base/units.h"
+#include "fluid/smoke_source.h"
+#include "io/image_file.h"
+#include "optics/medium.h"
+
+namespace gischt {
+namespace {
+
+// A fluid that needs no memory of earlier frames.
+class StatelessSource : public FluidSource {
+  public:
+    using Make = std::function<Frame(int number, Job& job)>;
+    explicit StatelessSource(Make make) : make_(std::move(make)) {}
+
+    Frame frame(int number, Job& job) override {
+        const double start = now_seconds();
+        Frame frame = make_(number, job);
+        figures_ = {};
+        figures_.frame = number;
+        figures_.time = frame.time;
+        for (const auto& [name, field] : frame.fields) {
+            figures_.active_tiles = std::max(figures_.active_tiles, field.map().size());
+        }
+        figures_.wall_seconds = now_seconds() - start;
+        bounds_ = frame.world_bounds();
+        last_ = number;
+        return frame;
+    }
+    FrameStatistics statistics() const override { return figures_; }
+    bool is_sequential() const override { return false; }
+    void save_state(const std::filesystem::path&) const override {}
+    void load_state(const std::filesystem::path&) override {}
+    int last_frame() const override { return last_; }
+    Box3d bounds() const override { return bounds_; }
+
+  private:
+    Make make_;
+    FrameStatistics figures_;
+    Box3d bounds_ = Box3d::empty();
+    int last_ = 0;
+};
+
+// The rotation around x, then y, then z as axis times angle in degrees.
+Vec3d axis_angle_degrees(const Vec3d& euler) {
+    Transform r;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3d e;
+        e[axis] = 1;
+        r = Transform::rotation(e, radians(euler[axis])) * r;
+    }
+    const auto& c = r.column;
+    const Vec3d twist{c[1].z - c[2].y, c[2].x - c[0].z, c[0].y - c[1].x};
+    const double angle = std::atan2(length(twist), c[0].x + c[1].y + c[2].z - 1);
+    if (angle < 1e-9) return {};
+    if (length(twist) > 1e-6) return (angle * 180 / pi / length(twist)) * twist;
+    // Half a turn: the axis is the direction that stays, a column of R + 1.
+    Vec3d best;
+    for (int a = 0; a < 3; ++a) {
+        Vec3d column = c[static_cast<std::size_t>(a)];
+        column[a] += 1;
+        if (dot(column, column) > dot(best, best)) best = column;
+    }
+    return 180.0 * normalize(best);
+}
+
+struct SolidOf {
+    Vec3d up;
+
+    SolidParams operator()(const SphereSurface& s) const {
+        SolidParams p;
+        p.kind = SolidKind::Sphere;
+        p.position = s.center;
+        p.radius = s.radius;
+        return p;
+    }
+    SolidParams operator()(const BoxSurface& s) const {
+        SolidParams p;
+        p.kind = SolidKind::Box;
+        p.position = s.center;
+        p.size = s.size;
+        p.rotation = s.rotation_degrees;
+        for (Vec3d& v : p.rotation.v) v = axis_angle_degrees(v);
+        return p;
+    }
+    SolidParams operator()(const GroundSurface& s) const {
+        SolidParams p;
+        p.kind = SolidKind::Plane;
+        p.position = s.point;
+        p.normal = s.normal ? normalize(*s.normal) : up;
+        return p;
+    }
+};
+
+struct SourceOf {
+    const Scene& scene;
+
+    std::unique_ptr<FluidSource> operator()(const FluidOf<SmokeParams>& f) const {
+        FluidWorld world;
+        world.fps = scene.fps;
+        world.gravity = scene.gravity_vector();
+        for (const SurfaceParams& s : scene.solids) {
+            world.solids.push_back(std::visit(SolidOf{scene.up_vector()}, s));
+        }
+        return std::make_unique<SmokeSource>(f.source, world);
+    }
+    std::unique_ptr<FluidSource> operator()(const FluidOf<FileParams>& f) const {
+        return std::make_unique<StatelessSource>([params = f.source](int number, Job& job) {
+            return read_file_frame(params, number, job);
+        });
+    }
+    std::unique_ptr<FluidSource> operator()(const FluidOf<CloudParams>& f) const {
+        return std::make_unique<StatelessSource>(
+            [params = f.source, up = scene.up_vector(), fps = scene.fps](int number, Job& job) {
+                Frame frame = make_cloud(params, up, number / fps, job);
+                frame.number = number;
+                frame.dt = 1 / fps;
+                return frame;
+            });
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<FluidSource> make_source(const Scene& scene, const FluidSection& fluid) {
+    return std::visit(SourceOf{scene}, fluid);
+}
+
+bool is_computed(const FluidSection& fluid) {
+    return !std::holds_alternative<FluidOf<FileParams>>(fluid);
+}
+
+World::World(const Scene& scene)
+    : scene_(scene), lights_(scene.lights, scene.up_vector(), [](const std::string& file) {
+          return read_image(file);
+      }) {}
+
+CameraParams World::camera(const View& view) const {
+    if (scene_.camera) return *scene_.camera;
+    Box3d box = Box3d::empty();
+    for (const auto& m : view.media) {
+        if (!m->bounds().is_empty()) box.extend(m->bounds());
+    }
+    if (box.is_empty()) return {};
+    Framing framing;
+    framing.aspect = static_cast<double>(scene_.film.width) / scene_.film.height;
+    framing.up = scene_.up_vector();
+    return fit_camera(box, framing);
+}
+
+// A fluid's frame where the scene puts it.
+static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& frame,
+                                           const Transform& placement) {
+    if (placement == Transform{}) return frame;
+    auto out = std::make_shared<Frame>(*frame);
+    for (auto& [name, field] : out->fields) field.to_world = placement * field.to_world;
+    return out;
+}
+
+View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int frame, Job& job) {
+    View view;
+    view.frame = frame;
+    view.time = scene_.time_of(frame);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const FluidCommon& common = common_of(scene_.fluids[i]);
+        view.frames.push_back(placed(frames[i], common.placement()));
+        // A colour map shows the fields as they are, whatever they do to light.
+        if (scene_.render.method == "field") continue;
+        view.media.push_back(
+            std::make_shared<Medium>(*view.frames[i], common.medium, view.time, job));
+    }
+    view.lights = lights_.at(view.time);
+    view.surfaces = SurfaceSet(scene_.solids, view.time, scene_.up_vector());
+    view.camera =
+        Camera(camera(view), view.time, scene_.film.width, scene_.film.height, scene_.up_vector());
+    view.shutter = scene_.film.shutter / scene_.fps;
+    return view;
+}
+
+}  // namespace gischt

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fluid/source.h"
+#include "optics/light_rig.h"
+#include "optics/view.h"
+#include "scene/scene.h"
+
+namespace gischt {
+
+// What moves a fluid of a scene: the solver, the procedure or the reader behind one section.
+std::unique_ptr<FluidSource> make_source(const Scene& scene, const FluidSection& fluid);
+
+// Whether frames of this fluid are computed (and cached as VDB), not read from files of somebody
+// else.
+bool is_computed(const FluidSection& fluid);
+
+// A scene over time: turns the frames of its fluids into what a render method is given. Loads
+// pictures of lights once.
+class World {
+  public:
+    // The scene must outlive it. Throws what reading the pictures throws.
+    explicit World(const Scene& scene);
+
+    // `frames` holds one frame per fluid of the scene, in order.
+    View view(const std::vector<std::shared_ptr<const Frame>>& frames, int frame, Job& job);
+    // The camera of such a view: the scene's, or the one that frames the fluids.
+    CameraParams camera(const View& view) const;
+
+  private:
+    const Scene& scene_;
+    LightRig lights_;
+};
+
+}  // namespace gischt

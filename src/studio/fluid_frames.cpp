@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/fluid_frames.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/version.h"
+
+namespace gischt {
+namespace fs = std::filesystem;
+
+// A state is written at most this often, in seconds: it costs time, and what is lost without it is
+// simulated again.
+constexpr double state_interval = 5;
+
+FluidFrames::FluidFrames(const LoadedScene& scene, std::size_t fluid, const Cache* cache)
+    : scene_(scene),
+      fluid_(fluid),
+      cache_(is_computed(scene.scene.fluids[fluid]) ? cache : nullptr),
+      name_(fluid_names(scene.scene)[fluid]) {}
+
+bool FluidFrames::is_cached(int number) const {
+    std::error_code ignored;
+    return cache_ && fs::is_regular_file(cache_->vdb(fluid_, number), ignored);
+}
+
+// Makes a source that can go on to `number`: from the saved state where that is earlier, else from
+// the beginning.
+void FluidFrames::start(int number) {
+    source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+    std::error_code ignored;
+    if (!cache_ || !fs::is_regular_file(cache_->state(fluid_), ignored)) return;
+    source_->load_state(cache_->state(fluid_));
+    saved_ = source_->last_frame();
+    if (saved_ < number) return;
+    source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+}
+
+// Whether the source can give that frame without starting anew.
+bool FluidFrames::can_give(int number) const {
+    return source_ && (!source_->is_sequential() || source_->last_frame() < number);
+}
+
+Frame FluidFrames::compute(int number, RunStatistics& run, Job& job) {
+    const PhaseTimer timer(job, "simulate");
+    Frame frame = source_->frame(number, job);
+    frame.metadata["creator"] = std::string("gischt ") + version;
+    frame.metadata["scene_hash"] = scene_.hash;
+    frame.metadata["fps"] = fmt::format("{:g}", scene_.scene.fps);
+    run.frames.push_back({name_, number, frame.time, source_->statistics()});
+    return frame;
+}
+
+void FluidFrames::save_state(bool now) {
+    if (!source_->is_sequential() || saved_ == source_->last_frame()) return;
+    if (!now && now_seconds() - saved_at_ < state_interval) return;
+    source_->save_state(cache_->state(fluid_));
+    saved_ = source_->last_frame();
+    saved_at_ = now_seconds();
+}
+
+void FluidFrames::compute_and_write(int number, RunStatistics& run, Job& job) {
+    Frame frame;
+    try {
+        job.check();
+        frame = compute(number, run, job);
+    } catch (const Error& e) {
+        // The source keeps the last whole frame, from which a later run goes on.
+        if (e.kind() == ErrorKind::Cancelled) save_state(true);
+        throw;
+    }
+    const PhaseTimer timer(job, "write");
+    write_vdb(cache_->vdb(fluid_, number), frame, {}, job);
+}
+
+void FluidFrames::ensure(int number, RunStatistics& run, Job& job) {
+    if (is_cached(number) || !cache_) return;
+    if (!can_give(number)) start(number);
+    const int first = source_->is_sequential() ? source_->last_frame() + 1 : number;
+    for (int n = first; n <= number; ++n) {
+        compute_and_write(n, run, job);
+        save_state(false);
+    }
+    if (number >= scene_.scene.frames.y) save_state(true);
+}
+
+std::shared_ptr<const Frame> FluidFrames::get(int number, RunStatistics& run, Job& job) {
+    if (cache_) {
+        ensure(number, run, job);
+        const PhaseTimer timer(job, "read");
+        VdbReadOptions options;
+        options.half_voxel = HalfVoxel::Follow;
+        Frame frame = read_vdb(cache_->vdb(fluid_, number), options, job);
+        frame.number = number;
+        frame.time = scene_.scene.time_of(number);
+        return std::make_shared<const Frame>(std::move(frame));
+    }
+    if (!can_give(number)) start(number);
+    if (source_->is_sequential()) {
+        for (int n = source_->last_frame() + 1; n < number; ++n) compute(n, run, job);
+    }
+    const bool computed = is_computed(scene_.scene.fluids[fluid_]);
+    return std::make_shared<const Frame>(computed ? compute(number, run, job)
+                                                  : source_->frame(number, job));
+}
+
+}  // namespace gischt

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "scene/world.h"
+#include "studio/cache.h"
+#include "studio/statistics.h"
+
+namespace gischt {
+
+// The frames of one fluid of a scene, in rising order: from the cache where they lie there, else
+// computed and, where there is a cache, written to it. What is handed out is what lies on the disk,
+// so that a picture does not depend on whether its frame was computed just now.
+class FluidFrames {
+  public:
+    // `cache` may be null; then computed frames live in memory only. Scene and cache must outlive
+    // it.
+    FluidFrames(const LoadedScene& scene, std::size_t fluid, const Cache* cache);
+
+    // Figures of newly computed frames are added to `run`.
+    std::shared_ptr<const Frame> get(int number, RunStatistics& run, Job& job);
+    // Makes sure that the frame lies in the cache, without reading it.
+    void ensure(int number, RunStatistics& run, Job& job);
+
+  private:
+    bool is_cached(int number) const;
+    bool can_give(int number) const;
+    void start(int number);
+    Frame compute(int number, RunStatistics& run, Job& job);
+    void compute_and_write(int number, RunStatistics& run, Job& job);
+    void save_state(bool now);
+
+    const LoadedScene& scene_;
+    std::size_t fluid_;
+    const Cache* cache_;
+    std::string name_;
+    std::unique_ptr<FluidSource> source_;
+    int saved_ = 0;        // the frame of the state on the disk
+    double saved_at_ = 0;  // when it was written, seconds
+};
+
+}  // namespace gischt

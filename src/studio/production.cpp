@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/production.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "base/version.h"
+#include "io/image_file.h"
+#include "io/mp4.h"
+
+namespace gischt {
+namespace fs = std::filesystem;
+namespace {
+
+std::vector<FluidFrames> open_fluids(const LoadedScene& scene, const Cache* cache) {
+    std::vector<FluidFrames> fluids;
+    for (std::size_t i = 0; i < scene.scene.fluids.size(); ++i)
+        fluids.emplace_back(scene, i, cache);
+    return fluids;
+}
+
+std::optional<Cache> open_cache(const LoadedScene& scene, const Order& order) {
+    if (!order.cache) return std::nullopt;
+    return Cache(*order.cache, scene, order.restart);
+}
+
+bool is_movie(const std::string& path) {
+    return fs::path(path).extension() == ".mp4";
+}
+
+// Where pictures and movies of an order go.
+class Outputs {
+  public:
+    Outputs(const LoadedScene& scene, const Order& order, bool numbered)
+        : scene_(scene), order_(order), numbered_(numbered) {
+        for (const std::string& path : order.outputs) {
+            if (!is_movie(path) && !is_image_file(path)) {
+                throw Error(ErrorKind::Usage, path, "has no extension that tells a format",
+                            hint_for(fs::path(path).extension().string(), formats()));
+            }
+        }
+    }
+
+    WriteOptions options() const {
+        WriteOptions o;
+        o.display.tone = scene_.scene.film.tone;
+        o.display.exposure = scene_.scene.film.exposure;
+        return o;
+    }
+    std::string path_of(const std::string& pattern, int frame) const {
+        return numbered_ ? frame_path(pattern, frame).string() : pattern;
+    }
+    // A picture that is still growing: shown in the .png files only.
+    void show_partial(const Image& image, int frame) const {
+        for (const std::string& pattern : order_.outputs) {
+            if (fs::path(pattern).extension() == ".png")
+                write_image(path_of(pattern, frame), image, options());
+        }
+    }
+    void write(const RenderResult& result, int frame, RunStatistics& run,
+               std::vector<std::string>& written) {
+        for (const std::string& pattern : order_.outputs) {
+            std::string path = pattern;
+            if (is_movie(pattern)) {
+                movie(pattern, result.image).add(result.image);
+            } else {
+                path = path_of(pattern, frame);
+                write_image(path, result.image, options());
+                written.push_back(path);
+            }
+            run.images.push_back({path, result.image.metadata.get("method"), frame,
+                                  result.image.width, result.image.height, result.statistics});
+        }
+    }
+    void finish(std::vector<std::string>& written) {
+        for (auto& [path, writer] : movies_) {
+            writer->finish();
+            written.push_back(path);
+        }
+    }
+
+  private:
+    static std::vector<std::string> formats() {
+        std::vector<std::string> list = image_extensions();
+        list.push_back(".mp4");
+        return list;
+    }
+    Mp4Writer& movie(const std::string& path, const Image& image) {
+        for (auto& [name, writer] : movies_) {
+            if (name == path) return *writer;
+        }
+        Mp4Options o;
+        o.frames_per_second = scene_.scene.fps;
+        o.display = options().display;
+        o.metadata = image.metadata;
+        movies_.emplace_back(path, std::make_unique<Mp4Writer>(path, image.width, image.height, o));
+        return *movies_.back().second;
+    }
+
+    const LoadedScene& scene_;
+    const Order& order_;
+    bool numbered_;
+    std::vector<std::pair<std::string, std::unique_ptr<Mp4Writer>>> movies_;
+};
+
+// Turns the camera around the up axis through its target.
+void turn_camera(CameraParams& camera, const Vec3d& up, double angle) {
+    const Transform turn = Transform::rotation(up, angle);
+    const Vec3d target = camera.target.at(0);
+    camera.position = target + turn.vector(camera.position.at(0) - target);
+}
+
+RenderSettings settings_of(const Scene& scene, const Order& order) {
+    RenderSettings s;
+    s.samples_per_pixel = scene.render.spp;
+    s.first_sample = order.first_sample;
+    s.seed = static_cast<std::uint64_t>(scene.seed);
+    s.depth = scene.render.depth;
+    s.noise = order.noise;
+    s.time_limit = order.time_limit;
+    s.filter = scene.film.filter;
+    s.filter_radius = scene.film.filter_radius;
+    s.preview = order.preview;
+    return s;
+}
+
+RenderResult render_with(const LoadedScene& scene, const View& view, const RenderSettings& settings,
+                         const Order& order, Job& job) {
+    const PhaseTimer timer(job, "render");
+    RenderResult result = make_method(scene.scene.render.method, scene.scene.render.methods)
+                              ->render(view, settings, job);
+    Metadata& m = result.image.metadata;
+    m.set("version", version);
+    m.set("command", order.command);
+    m.set("scene", scene.name);
+    m.set("scene_hash", scene.hash);
+    m.set("seed", std::to_string(scene.scene.seed));
+    m.set("frame", std::to_string(view.frame));
+    m.set("method", scene.scene.render.method);
+    return result;
+}
+
+}  // namespace
+
+void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, Job& job) {
+    const std::optional<Cache> cache = open_cache(scene, order);
+    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr);
+    for (int i = 0; i < order.frames.count(); ++i) {
+        const int frame = order.frames[i];
+        const JobPart part(job, static_cast<double>(i) / order.frames.count(),
+                           (i + 1.0) / order.frames.count(), fmt::format("frame {}", frame));
+        for (FluidFrames& fluid : fluids) fluid.ensure(frame, run, job);
+    }
+}
+
+std::vector<std::string> render(const LoadedScene& scene, const Order& order, RunStatistics& run,
+                                Job& job) {
+    const std::optional<Cache> cache = open_cache(scene, order);
+    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr);
+    const int count = order.turntable > 0 ? order.turntable : order.frames.count();
+    Outputs outputs(scene, order, count > 1);
+    std::vector<std::string> written;
+    std::vector<std::shared_ptr<const Frame>> frames(fluids.size());
+    std::optional<View> base;
+    World world(scene.scene);
+    for (int i = 0; i < count; ++i) {
+        const int frame = order.turntable > 0 ? order.frames.first : order.frames[i];
+        const int number = order.turntable > 0 ? i + 1 : frame;
+        const JobPart part(job, static_cast<double>(i) / count, (i + 1.0) / count,
+                           fmt::format("frame {}", number));
+        if (i == 0 || order.turntable == 0) {
+            const JobPart simulation(job, 0, 0.5, "");
+            for (std::size_t f = 0; f < fluids.size(); ++f)
+                frames[f] = fluids[f].get(frame, run, job);
+            base = world.view(frames, frame, job);
+        }
+        View view = *base;
+        if (order.turntable > 0) {
+            CameraParams camera = world.camera(view);
+            turn_camera(camera, scene.scene.up_vector(), 2 * pi * i / count);
+            view.camera =
+                Camera(camera, view.time, view.width(), view.height(), scene.scene.up_vector());
+        }
+        const JobPart rendering(job, 0.5, 1, "");
+        RenderSettings settings = settings_of(scene.scene, order);
+        settings.on_partial = [&](const Image& image) { outputs.show_partial(image, number); };
+        outputs.write(render_with(scene, view, settings, order, job), number, run, written);
+    }
+    outputs.finish(written);
+    return written;
+}
+
+}  // namespace gischt

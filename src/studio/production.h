@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studio/fluid_frames.h"
+#include "studio/frame_range.h"
+
+namespace gischt {
+
+// What is to come of a scene, beside what the scene says.
+struct Order {
+    FrameRange frames;
+    int turntable = 0;  // > 0: this many views around one frame, in place of a sequence
+    std::vector<std::string> outputs;  // patterns of pictures (.png, .exr, .hdr) and movies (.mp4)
+    std::optional<std::filesystem::path> cache;
+    bool restart = false;
+    double noise = 0, time_limit = 0;  // as in RenderSettings; the time counts per picture
+    int first_sample = 0;
+    bool preview = false;
+    std::string command;  // for the metadata of the pictures
+};
+
+// Simulates frame by frame what is not cached; writes nothing else.
+void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, Job& job);
+
+// Renders every frame as soon as it is there, and writes the pictures and movies. Pictures get the
+// frame's number where there are several. Returns the paths written.
+std::vector<std::string> render(const LoadedScene& scene, const Order& order, RunStatistics& run,
+                                Job& job);
+
+}  // namespace gischt

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The contract of the command line: results, exit statuses, messages, and that no half file is ever left behind.
+
+Usage: cli_test.py PATH_OF_GISCHT [TestCase.test_name]
+"""
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+GISCHT = None
+SMALL = ["--set", "domain.resolution=32", "--size", "48x32", "--spp", "1"]
+
+
+class CliCase(unittest.TestCase):
+    def setUp(self):
+        self.dir = pathlib.Path(tempfile.mkdtemp(prefix="gischt-"))
+        self.addCleanup(shutil.rmtree, self.dir)
+
+    def run_gischt(self, *arguments, status=0):
+        done = subprocess.run([GISCHT, *map(str, arguments)], cwd=self.dir, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, status, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def files(self):
+        return sorted(p.relative_to(self.dir).as_posix() for p in self.dir.rglob("*") if p.is_file())
+
+    def write(self, name, content):
+        path = self.dir / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+
+class Usage(CliCase):
+    def test_version_help_and_lists(self):
+        self.assertIn("gischt", self.run_gischt("--version").stdout)
+        self.assertIn("render", self.run_gischt("--help").stdout)
+        scenes = self.run_gischt("scenes").stdout
+        for name in ("plume", "smoke-2d", "jets", "cloud"):
+            self.assertIn(name, scenes)
+        self.assertIn("march", self.run_gischt("methods").stdout)
+        self.assertIn("1/m", self.run_gischt("doc", "medium.extinction").stdout)
+        json.loads(self.run_gischt("doc", "--json-schema").stdout)
+
+    def test_printed_scene_is_a_scene(self):
+        self.write("mine.toml", self.run_gischt("scenes", "plume").stdout)
+        self.run_gischt("check", "mine.toml")
+
+    def test_unknown_words_name_the_nearest(self):
+        self.assertIn("did you mean 'render'", self.run_gischt("rendr", "x", status=2).stderr)
+        self.assertIn("did you mean 'plume'", self.run_gischt("check", "plum", status=2).stderr)
+        self.assertIn("did you mean 'march'", self.run_gischt("render", "cloud", "--method", "mrach", status=2).stderr)
+        self.assertIn("did you mean 'medium'", self.run_gischt("check", "plume", "--set", "medum.g=0", status=2).stderr)
+
+    def test_bad_flags(self):
+        for flags in (["--frames", "5-2"], ["--size", "axb"], ["--size", "0x9"], ["--spp", "0"], ["--time", "soon"],
+                      ["--samples", "4:2"], ["--preset", "lava"], ["--nonsense"]):
+            self.run_gischt("render", "cloud", "-o", "x.png", *flags, status=2)
+        self.run_gischt("render", "cloud", "-o", "x.jpg", status=2)
+        self.run_gischt(status=2)
+        self.assertEqual(self.files(), [])
+
+
+class BadScenes(CliCase):
+    def fails(self, text, *words):
+        self.write("bad.toml", text)
+        error = self.run_gischt("check", "bad.toml", status=2).stderr
+        for word in words:
+            self.assertIn(word, error)
+
+    def test_messages_name_place_fact_and_mend(self):
+        self.fails('[[fluid]]\ntype = "smoke"\nbouyancy = 3\n', "bad.toml:3:1", "bouyancy", "did you mean")
+        self.fails('[fluid]\ntype = "smoke"\n[fluid.domain]\nresolution = "big"\n', "bad.toml:4", "whole number")
+        self.fails('[fluid]\ntype = "smoke"\n[fluid.domain]\nresolution = -4\n', "bad.toml:4", "resolution")
+        self.fails('[fluid]\ntype = "smok"\n', "did you mean 'smoke'")
+        self.fails("frames = [1,\n", "bad.toml:")
+        self.fails("\x00\xff\xfe", "bad.toml")
+        self.fails("[film]\nwidth = 0\n", "width")
+
+    def test_impossible_sizes_are_refused_before_the_work(self):
+        self.fails('[fluid]\ntype = "smoke"\n[fluid.domain]\nmin = [1,1,1]\nmax = [0,2,2]\n', "domain")
+
+    def test_missing_scene(self):
+        self.run_gischt("run", "nowhere.toml", status=2)
+        self.assertEqual(self.files(), [])
+
+
+class BadInputs(CliCase):
+    def test_broken_volumes(self):
+        self.run_gischt("sim", "plume", "--set", "domain.resolution=32", "--frames", "1-1", "-o", "c")
+        whole = (self.dir / "c/smoke_0001.vdb").read_bytes()
+        shutil.rmtree(self.dir / "c")
+        noise = random.Random(1)
+        broken = {"empty.vdb": b"", "noise.vdb": noise.randbytes(5000), "head.vdb": whole[:200], "half.vdb": whole[: len(whole) // 2],
+                  "tail.vdb": whole[:-9]}
+        for name, content in broken.items():
+            self.write(name, content)
+            for command in (["render", name, "-o", "x.png"], ["info", name]):
+                error = self.run_gischt(*command, status=3).stderr
+                self.assertIn(name, error)
+        self.run_gischt("render", "missing.vdb", "-o", "x.png", status=3)
+        self.assertEqual(self.files(), sorted(broken))
+
+    def test_broken_images(self):
+        self.write("a.png", b"not a picture")
+        self.write("a.exr", b"\x76\x2f\x31\x01")
+        for name in ("a.png", "a.exr", "b.png"):
+            self.run_gischt("compare", name, name, status=3)
+
+    def test_unwritable_output(self):
+        self.write("file", b"")
+        self.run_gischt("render", "cloud", *SMALL[2:], "--set", "fluid.resolution=16", "-o", "file/x.png", status=4)
+        self.assertEqual(self.files(), ["file"])
+
+
+class Work(CliCase):
+    def test_run_makes_frames_pictures_and_a_film(self):
+        self.run_gischt("run", "plume", *SMALL, "--frames", "1-3", "-o", "p", "--stats", "s.json")
+        expected = ["p/plume.mp4"] + [f"p/plume_000{i}.png" for i in (1, 2, 3)] + [f"p/smoke_000{i}.vdb" for i in (1, 2, 3)]
+        for name in expected:
+            self.assertIn(name, self.files())
+        stats = json.loads((self.dir / "s.json").read_text())
+        for key in ("version", "command", "scene_hash", "threads", "wall_seconds", "peak_memory_bytes", "phases"):
+            self.assertIn(key, stats)
+        self.assertEqual([f["frame"] for f in stats["frames"]], [1, 2, 3])
+        for frame in stats["frames"]:
+            self.assertGreater(frame["mass"], 0)
+            self.assertGreaterEqual(frame["steps"], 1)
+            self.assertLess(frame["pressure_residual"], 1e-2)
+        self.assertIn("command = gischt run plume", self.run_gischt("info", "p/plume_0001.png").stdout)
+        # A second run computes nothing again.
+        self.run_gischt("run", "plume", *SMALL, "--frames", "1-3", "-o", "p", "--stats", "s.json")
+        self.assertEqual(json.loads((self.dir / "s.json").read_text())["frames"], [])
+        # Another simulation may not mix with it.
+        self.run_gischt("run", "plume", *SMALL, "--set", "seed=5", "--frames", "1-3", "-o", "p", status=2)
+
+    def test_threads_give_the_same_bytes(self):
+        for threads in (1, 2):
+            self.run_gischt("run", "plume", *SMALL, "--frames", "1-4", "-o", f"t{threads}", "--threads", threads)
+        for name in ("smoke_0004.vdb", "plume_0004.png"):
+            a, b = (self.dir / f"t{t}" / name for t in (1, 2))
+            if name.endswith(".vdb"):
+                self.assertEqual(a.read_bytes(), b.read_bytes(), name)
+            else:
+                self.run_gischt("compare", "--tol", 0, a, b)
+
+    def test_stop_and_resume_give_the_same_bytes(self):
+        flags = ["--set", "domain.resolution=48", "--frames", "1-16"]
+        self.run_gischt("sim", "plume", *flags, "-o", "whole")
+        for _ in range(3):
+            process = subprocess.Popen([GISCHT, "sim", "plume", *flags, "-o", "parts", "-q"], cwd=self.dir)
+            time.sleep(0.7)
+            process.send_signal(signal.SIGINT)
+            self.assertIn(process.wait(timeout=30), (0, 130))
+        self.run_gischt("sim", "plume", *flags, "-o", "parts")
+        for i in range(1, 17):
+            name = f"smoke_{i:04}.vdb"
+            self.assertEqual((self.dir / "whole" / name).read_bytes(), (self.dir / "parts" / name).read_bytes(), name)
+        leftovers = [f for f in self.files() if not f.endswith((".vdb", ".state", "scene.toml"))]
+        self.assertEqual(leftovers, [])
+
+    def test_bare_volume_and_compare(self):
+        self.run_gischt("sim", "plume", "--set", "domain.resolution=32", "--frames", "1-20x1", "-o", "c")
+        done = self.run_gischt("render", "c/smoke_0020.vdb", "-o", "a.png", "--size", "64x48", "--spp", 2)
+        self.assertIn("assumed", done.stderr)
+        self.run_gischt("render", "c", "-o", "b.exr", "--size", "64x48", "--spp", 2, "--frames", "20")
+        self.run_gischt("compare", "a.png", "a.png", "--tol", 0)
+        self.run_gischt("compare", "a.png", "b.exr", "--tol", 0, status=1)
+        self.assertIn("density", self.run_gischt("info", "c/smoke_0020.vdb").stdout)
+        self.assertIn("20 frames", self.run_gischt("info", "c").stdout)
+
+    def test_cloud_takes_a_real_volume(self):
+        self.run_gischt("render", "cloud", "--set", "fluid.resolution=24", "--size", "32x20", "--spp", 1, "-o", "a.exr")
+        self.run_gischt("sim", "plume", "--set", "domain.resolution=32", "--frames", "1-8", "-o", "c")
+        self.run_gischt("render", "cloud", "--set", "fluid.file=c/smoke_0008.vdb", "--size", "32x20", "--spp", 1, "-o", "b.exr")
+
+    def test_field_pictures(self):
+        self.run_gischt("render", "smoke-2d", "--set", "domain.resolution=48", "--frames", "4", "-o", "f.png")
+        self.assertEqual(self.files(), ["f.png"])
+
+    def test_interrupted_render_leaves_whole_files_only(self):
+        process = subprocess.Popen([GISCHT, "render", "cloud", "--spp", "4096", "-o", "x.exr", "-q"], cwd=self.dir)
+        time.sleep(2.5)
+        asked = time.time()
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=20), 130)
+        self.assertLess(time.time() - asked, 5)
+        self.assertEqual(self.files(), [])
+
+
+if __name__ == "__main__":
+    GISCHT = os.path.abspath(sys.argv[1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)
