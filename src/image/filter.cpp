@@ -108,7 +108,8 @@ float ReconstructionFilter::sample_axis(float u, float& sign) const {
     const auto bin = static_cast<int>(next - cdf_.begin()) - 1;
     const float lo = *(next - 1), hi = *next;
     const float f = hi > lo ? std::clamp((share - lo) / (hi - lo), 0.0f, 1.0f) : 0.5f;
-    if (profile((bin + 0.5) / bins * radius_) < 0) sign = -sign;
+    // Only Mitchell's filter has negative lobes: its bins beyond the zero at 4/7 of the radius.
+    if (kind_ == FilterKind::Mitchell && mitchell(2 * (bin + 0.5) / bins) < 0) sign = -sign;
     return std::copysign((static_cast<float>(bin) + f) / bins * radius_, t);
 }
 
