@@ -20,6 +20,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 8>;
 using Vec = hn::Vec<Floats>;
 
+// Odd lanes of one vector and even lanes of the other, for the lanes that begin at x of a row; a
+// machine without vectors has one lane.
+template <class V>
+HWY_INLINE V odd_even(V odd, V even, [[maybe_unused]] int x) {
+#if HWY_TARGET == HWY_SCALAR
+    return (x & 1) != 0 ? odd : even;
+#else
+    return hn::OddEven(odd, even);
+#endif
+}
+
 // Compile-time numbers of a tile shape.
 template <bool is_2d>
 struct Shape {
@@ -76,7 +87,7 @@ HWY_INLINE Neighbours load_neighbours(const Around& a, int x, int row, int plane
     const Vec y0 = hn::Load(d, before), y1 = hn::Load(d, after);
     // Cells of the lower row, whose other row is the one before, lie in the even lanes where plane
     // + color is even.
-    n.v[OtherRow] = ((plane + color) & 1) == 0 ? hn::OddEven(y1, y0) : hn::OddEven(y0, y1);
+    n.v[OtherRow] = ((plane + color) & 1) == 0 ? odd_even(y1, y0, x) : odd_even(y0, y1, x);
     if constexpr (!is_2d) {
         n.v[Back] = hn::Load(
             d, plane > 0 ? a.own + at - S::plane : a.beside[4] + at + (S::planes - 1) * S::plane);

@@ -75,8 +75,8 @@ struct AdvanceKernel {
                 // Rows 2 row and 2 row + 1 of x: the even lanes of the first are red in even
                 // planes.
                 const bool even = (plane & 1) == 0;
-                const Vec lower = even ? hn::OddEven(p1, p0) : hn::OddEven(p0, p1);
-                const Vec upper = even ? hn::OddEven(p0, p1) : hn::OddEven(p1, p0);
+                const Vec lower = even ? odd_even(p1, p0, x) : odd_even(p0, p1, x);
+                const Vec upper = even ? odd_even(p0, p1, x) : odd_even(p1, p0, x);
                 float* x0 = user + x + Shape<is_2d>::width * 2 * (row + Shape<is_2d>::rows * plane);
                 float* x1 = x0 + Shape<is_2d>::width;
                 hn::Store(hn::MulAdd(step, lower, hn::Load(d, x0)), d, x0);
@@ -227,8 +227,8 @@ struct SplitKernel {
                     user + x + Shape<is_2d>::width * 2 * (row + Shape<is_2d>::rows * plane);
                 const Vec lower = hn::Load(d, x0), upper = hn::Load(d, x0 + Shape<is_2d>::width);
                 const bool even = (plane & 1) == 0;
-                const Vec red = even ? hn::OddEven(upper, lower) : hn::OddEven(lower, upper);
-                const Vec black = even ? hn::OddEven(lower, upper) : hn::OddEven(upper, lower);
+                const Vec red = even ? odd_even(upper, lower, x) : odd_even(lower, upper, x);
+                const Vec black = even ? odd_even(lower, upper, x) : odd_even(upper, lower, x);
                 const auto has_red = hn::Gt(c.inverse_diagonal(0, at), zero);
                 const auto has_black = hn::Gt(c.inverse_diagonal(1, at), zero);
                 hn::Store(hn::IfThenElseZero(has_red, red), d, field + at);

@@ -13,6 +13,7 @@ namespace gischt::HWY_NAMESPACE {
 // worked on 4 at a time.
 using Four = hn::CappedTag<float, 4>;
 using Vec4 = hn::Vec<Four>;
+constexpr int lanes = static_cast<int>(hn::MaxLanes(Four()));  // 4, or 1 without vectors
 
 struct TransferArguments {
     const StencilLevel& fine;
@@ -40,8 +41,8 @@ HWY_INLINE Vec4 load_row(const float* red, int x, int j, int k, int black_step) 
     using S = Shape<is_2d>;
     const Four d;
     const int at = x + S::width * ((j >> 1) + S::rows * k), even = (j + k) & 1;
-    return hn::OddEven(hn::Load(d, red + at + (1 - even) * black_step),
-                       hn::Load(d, red + at + even * black_step));
+    return odd_even(hn::Load(d, red + at + (1 - even) * black_step),
+                    hn::Load(d, red + at + even * black_step), x);
 }
 
 // A quarter of the coarse face fractions of a natural row, -x +x -y +y -z +z.
@@ -105,7 +106,7 @@ struct RestrictKernel {
         const Four d;
         for (int k = 0; k < nz; ++k) {
             for (int j = 0; j < ny; ++j) {
-                for (int x = 0; x < nx; x += 4) {
+                for (int x = 0; x < nx; x += lanes) {
                     const RedChildren c = load_children<is_2d>(res.own, x, j, k);
                     for (int end = 0; end < 2; ++end) {
                         hn::Store(half_sum(c, 0, end), d, h.x[end][k][j] + 4 + x);
@@ -128,7 +129,7 @@ struct RestrictKernel {
                 h.x[1][k][j][3] = low[0] + (is_2d ? 0.0f : low[S::plane]);
                 h.x[0][k][j][4 + nx] = high[0] + (is_2d ? 0.0f : high[S::plane]);
             }
-            for (int x = 0; x < nx; x += 4) {
+            for (int x = 0; x < nx; x += lanes) {
                 const RedChildren low = load_children<is_2d>(res.beside[2], x, ny - 1, k);
                 const RedChildren high = load_children<is_2d>(res.beside[3], x, 0, k);
                 hn::Store(half_sum(low, 1, 1), d, h.y[1][k][0] + x);
@@ -137,10 +138,12 @@ struct RestrictKernel {
         }
         if constexpr (!is_2d) {
             for (int j = 0; j < ny; ++j) {
-                const RedChildren low = load_children<is_2d>(res.beside[4], 0, j, nz - 1);
-                const RedChildren high = load_children<is_2d>(res.beside[5], 0, j, 0);
-                hn::Store(half_sum(low, 2, 1), d, h.z[1][0][j]);
-                hn::Store(half_sum(high, 2, 0), d, h.z[0][nz + 1][j]);
+                for (int x = 0; x < nx; x += lanes) {
+                    const RedChildren low = load_children<is_2d>(res.beside[4], x, j, nz - 1);
+                    const RedChildren high = load_children<is_2d>(res.beside[5], x, j, 0);
+                    hn::Store(half_sum(low, 2, 1), d, h.z[1][0][j] + x);
+                    hn::Store(half_sum(high, 2, 0), d, h.z[0][nz + 1][j] + x);
+                }
             }
         }
     }
@@ -178,15 +181,15 @@ struct RestrictKernel {
         float* red = a.to.tile(o.tile);
         for (int k = 0; k < nz; ++k) {
             for (int j = 0; j < ny; j += 2) {
-                for (int x = 0; x < nx; x += 4) {
+                for (int x = 0; x < nx; x += lanes) {
                     const Vec4 lower = row(h, o, a.coarse, x, j, k);
                     const Vec4 upper = row(h, o, a.coarse, x, j + 1, k);
                     const int at = o.first.x + x +
                                    S::width * ((o.first.y + j) / 2 + S::rows * (o.first.z + k));
                     const bool even = ((o.first.z + k) & 1) == 0;
-                    hn::Store(even ? hn::OddEven(upper, lower) : hn::OddEven(lower, upper), d,
+                    hn::Store(even ? odd_even(upper, lower, x) : odd_even(lower, upper, x), d,
                               red + at);
-                    hn::Store(even ? hn::OddEven(lower, upper) : hn::OddEven(upper, lower), d,
+                    hn::Store(even ? odd_even(lower, upper, x) : odd_even(upper, lower, x), d,
                               red + at + color_values);
                 }
             }
@@ -224,7 +227,7 @@ struct ProlongKernel {
                 int cj = o.first.y + j, ck = o.first.z + k;
                 const float* tile = tile_of(e, cj, ck);
                 float* row = p.e[k + 1][j + 1] + 4;
-                for (int x = 0; x < nx; x += 4) {
+                for (int x = 0; x < nx; x += lanes) {
                     hn::Store(load_row<is_2d>(tile, o.first.x + x, cj, ck, color_values), d,
                               row + x);
                 }
@@ -249,7 +252,7 @@ struct ProlongKernel {
         float* z = a.to.tile(tile);
         for (int k = 0; k < nz; ++k) {
             for (int j = 0; j < ny; ++j) {
-                for (int x = 0; x < nx; x += 4) {
+                for (int x = 0; x < nx; x += lanes) {
                     const float* at = p.e[k + 1][j + 1] + 4 + x;
                     const QuarterFractions<is_2d> f(a.coarse, a.coarse.block_of(o.tile),
                                                     o.first.x + x, o.first.y + j, o.first.z + k);
@@ -271,7 +274,7 @@ struct ProlongKernel {
                         const int to = row + plane * S::plane;
                         HWY_ALIGN float correction[8];
                         hn::StoreInterleaved2(even, odd, d, correction);
-                        for (int i = 0; i < 8; i += 4) {
+                        for (int i = 0; i < 2 * lanes; i += lanes) {
                             const Vec4 first =
                                 hn::Mul(hn::Load(d, fine_block.inverse_diagonal[0] + to + i),
                                         hn::Load(d, r + to + i));
