@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/method.h"
+
+#include <array>
+#include <vector>
+
+#include "base/error.h"
+#include "render/field/field.h"
+#include "render/march/march.h"
+#include "render/params.h"
+
+namespace gischt {
+namespace {
+
+constexpr std::array<MethodInfo, 2> methods{{
+    {"field", field_simulates, field_leaves_out, field_cost,
+     [](const RenderParams& p) { return make_field_method(p.field); }},
+    {"march", march_simulates, march_leaves_out, march_cost,
+     [](const RenderParams& p) { return make_march_method(p.march); }},
+}};
+
+}  // namespace
+
+const Table<RenderParams>& render_params_table() {
+    static const Table<RenderParams> table =
+        Table<RenderParams>("render", "The parameters of the render methods")
+            .sub("march", &RenderParams::march, march_table(), {.help = "Of the method 'march'"})
+            .sub("field", &RenderParams::field, field_params_table(),
+                 {.help = "Of the method 'field'"});
+    return table;
+}
+
+std::span<const MethodInfo> render_methods() {
+    return methods;
+}
+
+const MethodInfo& find_method(std::string_view name) {
+    std::vector<std::string> names;
+    for (const MethodInfo& m : methods) {
+        if (m.name == name) return m;
+        names.emplace_back(m.name);
+    }
+    throw Error(ErrorKind::Usage, "render", "there is no method '" + std::string(name) + "'",
+                hint_for(name, names));
+}
+
+std::unique_ptr<RenderMethod> make_method(std::string_view name, const RenderParams& params) {
+    return find_method(name).make(params);
+}
+
+}  // namespace gischt

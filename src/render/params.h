@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "render/field/field_params.h"
+#include "render/march/march_params.h"
+#include "schema/table.h"
+
+namespace gischt {
+
+// The parameters of all render methods, each in a table of the method's name.
+struct RenderParams {
+    MarchParams march;
+    FieldParams field;
+};
+
+const Table<RenderParams>& render_params_table();
+
+}  // namespace gischt
