@@ -6,14 +6,19 @@
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
+#include <cinttypes>
+#include <cstdio>
 #include <fstream>
+#include <limits>
 #include <optional>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "base/version.h"
 #include "io/atomic_file.h"
+#include "io/vdb_check.h"
 #include "io/vdb_from_tree.h"
 #include "io/vdb_grid.h"
 #include "io/vdb_header.h"
@@ -65,6 +70,7 @@ openvdb::GridBase::Ptr read_tree(const std::string& path, const VdbHeader& heade
     openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(entry.type);
     const VdbEntry& tree_entry =
         entry.parent < 0 ? entry : header.grids[static_cast<std::size_t>(entry.parent)];
+    check_vdb_tree(path, tree_entry);
     grid->setSaveFloatAsHalf(tree_entry.is_half);
     openvdb::io::setDataCompression(in, tree_entry.compression);
     in.seekg(tree_entry.data);
@@ -87,8 +93,9 @@ auto guarded(const std::string& path, const std::string& grid, F&& f) {
     };
     try {
         return f();
-    } catch (const Error&) {
-        throw;
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::Input || e.where() == path) throw;
+        throw fail(e.fact());
     } catch (const std::ios_base::failure&) {
         throw fail("it reaches beyond the end of the file");
     } catch (const std::bad_alloc&) {
@@ -127,6 +134,7 @@ bool is_known_type(const std::string& type) {
 
 // Why a grid cannot be read, or nothing.
 std::string why_not(const VdbEntry& entry) {
+    if (entry.transform == "NonlinearFrustumMap") return "its transform is not affine";
     if (is_known_type(entry.type)) return {};
     return fmt::format("type '{}' has no place in a frame", entry.value_type());
 }
@@ -147,7 +155,6 @@ std::optional<VdbGrid> read_grid(const VdbHeader& header, const VdbEntry& entry,
     if (const std::string why = why_not(entry); !why.empty()) return skip(why);
     const auto tree = guarded(reading.path, entry.name,
                               [&] { return read_tree(reading.path, header, entry, reading.job); });
-    if (!tree->transform().isLinear()) return skip("its transform is not affine");
 
     VdbGrid out;
     out.name = entry.name;
@@ -189,6 +196,211 @@ std::vector<int> wanted_entries(const VdbHeader& header, const VdbReadOptions& o
     return out;
 }
 
+// ---- looking --------------------------------------------------------------------------
+
+// One number of a value: itself, or a vector's length.
+template <class V>
+double magnitude(const V& value) {
+    if constexpr (components_of<V> == 3) {
+        return std::sqrt(double(value[0]) * double(value[0]) + double(value[1]) * double(value[1]) +
+                         double(value[2]) * double(value[2]));
+    } else {
+        return static_cast<double>(value);
+    }
+}
+
+struct Range {
+    double min = std::numeric_limits<double>::infinity(), max = -min;
+
+    void extend(double x) {
+        if (!std::isfinite(x)) return;
+        min = std::min(min, x);
+        max = std::max(max, x);
+    }
+};
+
+template <class Grid>
+void describe(const Grid& grid, VdbGridInfo& info) {
+    const auto& tree = grid.tree();
+    info.active_voxels = static_cast<std::int64_t>(tree.activeVoxelCount());
+    openvdb::CoordBBox box;
+    if (tree.evalActiveVoxelBoundingBox(box)) {
+        info.lo = {box.min().x(), box.min().y(), box.min().z()};
+        info.hi = {box.max().x(), box.max().y(), box.max().z()};
+    }
+    Range range;
+    for (auto it = tree.cbeginValueOn(); it; ++it) range.extend(magnitude(it.getValue()));
+    if (range.min <= range.max) {
+        info.min = range.min;
+        info.max = range.max;
+    }
+}
+
+// What the file itself says of a grid that the library does not know.
+void describe_unknown(const VdbEntry& entry, VdbGridInfo& info) {
+    const auto text = [&](const char* key) {
+        const auto found = entry.metadata.find(key);
+        return found == entry.metadata.end() ? std::string() : found->second;
+    };
+    std::sscanf(text("file_voxel_count").c_str(), "%" SCNd64, &info.active_voxels);
+    std::sscanf(text("file_bbox_min").c_str(), "%d %d %d", &info.lo[0], &info.lo[1], &info.lo[2]);
+    std::sscanf(text("file_bbox_max").c_str(), "%d %d %d", &info.hi[0], &info.hi[1], &info.hi[2]);
+}
+
+VdbGridInfo grid_info(const std::string& path, const VdbHeader& header, const VdbEntry& entry,
+                      Job& job) {
+    VdbGridInfo info;
+    info.name = entry.name;
+    info.type = entry.value_type();
+    info.grid_class = entry.grid_class();
+    info.is_half = entry.is_half;
+    info.metadata = entry.metadata;
+    info.note = why_not(entry);
+    info.is_readable = info.note.empty();
+    if (!info.is_readable) {
+        describe_unknown(entry, info);
+        return info;
+    }
+    guarded(path, entry.name, [&] {
+        const auto grid = read_tree(path, header, entry, job);
+        visit(*grid, [&](const auto& g) { describe(g, info); });
+        const auto size = grid->voxelSize();
+        const auto origin = grid->transform().indexToWorld(openvdb::Vec3d(0));
+        info.voxel_size = {size.x(), size.y(), size.z()};
+        info.origin = {origin.x(), origin.y(), origin.z()};
+    });
+    return info;
+}
+
+// ---- writing --------------------------------------------------------------------------
+
+// The largest number that a half float holds.
+constexpr float largest_half = 65504;
+
+bool fits_half(const Field& field) {
+    for (std::size_t c = 0; c < field.component.size(); ++c) {
+        if (std::abs(field.background[c]) > largest_half) return false;
+        const TileField<float>& values = field.component[c];
+        const double largest = parallel_max(values.map().size(), 64, [&](int t) {
+            double m = 0;
+            for (int i = 0; i < tile_values; ++i) {
+                m = std::max(m, std::abs(static_cast<double>(values.tile(t)[i])));
+            }
+            return m;
+        });
+        if (largest > largest_half) return false;
+    }
+    return true;
+}
+
+bool wants_half(const std::string& name, const Field& field, const VdbWriteOptions& options,
+                Job& job) {
+    if (field.kind == FieldClass::LevelSet) return false;
+    if (!(field.is_vector() ? options.half_vectors : options.half_scalars)) return false;
+    if (fits_half(field)) return true;
+    job.info(
+        fmt::format("field '{}' goes beyond {}: written as 32-bit floats", name, largest_half));
+    return false;
+}
+
+openvdb::GridClass to_grid_class(FieldClass kind) {
+    switch (kind) {
+        case FieldClass::FogVolume:
+            return openvdb::GRID_FOG_VOLUME;
+        case FieldClass::LevelSet:
+            return openvdb::GRID_LEVEL_SET;
+        case FieldClass::Unknown:
+            break;
+    }
+    return openvdb::GRID_UNKNOWN;
+}
+
+openvdb::GridBase::Ptr to_grid(const std::string& name, const Field& field,
+                               const VdbWriteOptions& options, Job& job) {
+    openvdb::GridBase::Ptr grid;
+    if (field.is_vector()) {
+        grid = to_tree<openvdb::Vec3SGrid>(field, job);
+        // Transforms with the grid as a displacement does: a velocity.
+        grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    } else {
+        grid = to_tree<openvdb::FloatGrid>(field, job);
+    }
+    grid->setName(name);
+    grid->setGridClass(to_grid_class(field.kind));
+    grid->setTransform(from_transform(field.to_world, options.half_voxel));
+    grid->setSaveFloatAsHalf(wants_half(name, field, options, job));
+    return grid;
+}
+
+// What a reader cannot see in the tree: unit, 2-D tiles, the cells that carry meaning.
+void add_grid_metadata(const std::string& name, const Frame& frame, openvdb::GridBase& grid) {
+    const std::string prefix = name + ".";
+    for (const auto& [key, value] : frame.metadata) {
+        if (!key.starts_with(prefix) || key.size() == prefix.size()) continue;
+        grid.insertMeta(key.substr(prefix.size()), openvdb::StringMetadata(value));
+    }
+    const std::string unit = unit_of(name, frame.metadata);
+    if (!unit.empty()) grid.insertMeta("unit", openvdb::StringMetadata(unit));
+    const TileMap& map = frame.find(name)->map();
+    const auto triple = [](const Vec3i& v) {
+        return openvdb::Vec3IMetadata(openvdb::Vec3i(v.x, v.y, v.z));
+    };
+    grid.insertMeta("gischt_bounds_min", triple(map.bounds().lo));
+    grid.insertMeta("gischt_bounds_max", triple(map.bounds().hi));
+    if (map.is_2d()) grid.insertMeta("gischt_2d", openvdb::BoolMetadata(true));
+}
+
+openvdb::MetaMap file_metadata(const Frame& frame) {
+    openvdb::MetaMap out;
+    for (const auto& [key, value] : frame.metadata) {
+        const bool is_of_grid = frame.fields.contains(key.substr(0, key.find('.')));
+        if (!key.empty() && !is_of_grid) out.insertMeta(key, openvdb::StringMetadata(value));
+    }
+    const auto set = [&](const char* key, const openvdb::Metadata& value) {
+        out.removeMeta(key);  // which may be of another type
+        out.insertMeta(key, value);
+    };
+    set("creator", openvdb::StringMetadata(fmt::format("gischt {}", version)));
+    set("frame", openvdb::Int32Metadata(frame.number));
+    set("seconds", openvdb::DoubleMetadata(frame.time));
+    set("dt", openvdb::DoubleMetadata(frame.dt));
+    out.removeMeta("fps");
+    if (frame.dt > 0) out.insertMeta("fps", openvdb::DoubleMetadata(1 / frame.dt));
+    return out;
+}
+
+// The library names each file by a random UUID. One made of the content keeps the bytes a function
+// of the frame.
+void stamp_uuid(const std::string& file) {
+    constexpr std::streamoff uuid_at = 8 + 4 + 4 + 4 + 1, content_at = uuid_at + 36;
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekg(content_at);
+    std::uint64_t hash = hash_bytes("gischt");
+    std::vector<char> block(1 << 20);
+    while (stream) {
+        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+        hash = hash_bytes({block.data(), static_cast<std::size_t>(stream.gcount())}, hash);
+    }
+    stream.clear();
+    const std::string h = hex(hash) + hex(mix64(hash));
+    stream.seekp(uuid_at);
+    stream << h.substr(0, 8) << '-' << h.substr(8, 4) << '-' << h.substr(12, 4) << '-'
+           << h.substr(16, 4) << '-' << h.substr(20);
+    stream.close();
+    if (!stream) throw std::runtime_error("it cannot be written");
+}
+
+void save(const std::string& file, const openvdb::GridCPtrVec& grids,
+          const openvdb::MetaMap& metadata) {
+    openvdb::io::File out(file);
+    const bool has_blosc = openvdb::io::Archive::hasBloscCompression();
+    out.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK |
+                       (has_blosc ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP));
+    out.write(grids, metadata);
+    out.close();
+    stamp_uuid(file);
+}
+
 }  // namespace
 
 Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job) {
@@ -219,6 +431,43 @@ Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job)
         for (VdbGrid& grid : grids) shift_half_voxel(grid.field);
     }
     return assemble_frame(std::move(grids), header, path, options.customary, job);
+}
+
+VdbInfo list_vdb(const std::string& path, Job& job) {
+    openvdb::initialize();
+    const VdbHeader header = read_vdb_header(path);
+    VdbInfo info;
+    info.format = header.format;
+    info.library = fmt::format("{}.{}", header.library_major, header.library_minor);
+    info.metadata = header.metadata;
+    for (const VdbEntry& entry : header.grids) {
+        job.check();
+        info.grids.push_back(grid_info(path, header, entry, job));
+    }
+    return info;
+}
+
+void write_vdb(const std::string& path, const Frame& frame, const VdbWriteOptions& options,
+               Job& job) {
+    const PhaseTimer timer(job, "write");
+    openvdb::initialize();
+    openvdb::GridCPtrVec grids;
+    for (const auto& [name, field] : frame.fields) {
+        job.check();
+        const auto grid = to_grid(name, field, options, job);
+        add_grid_metadata(name, frame, *grid);
+        grids.push_back(grid);
+    }
+    AtomicFile file(path);
+    try {
+        save(file.temporary(), grids, file_metadata(frame));
+        read_vdb_header(file.temporary());  // a full disk may go unnoticed until here
+    } catch (const std::exception& e) {
+        throw Error(ErrorKind::Resource, path, fmt::format("writing failed ({})", e.what()),
+                    "is the disk full?");
+    }
+    job.check();
+    file.commit();
 }
 
 }  // namespace gischt

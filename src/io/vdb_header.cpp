@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
-#include "base/error.h"
+#include "io/vdb_bytes.h"
 
 namespace gischt {
 
@@ -19,65 +18,8 @@ constexpr std::uint32_t newest_format = 224;     // OpenVDB 4 to 12
 constexpr std::size_t uuid_length = 36;
 constexpr char unique_separator = 30;  // between a name and its number
 
-// The stream with a bound: every length read from the file is checked against what is left of it.
-class Reader {
-  public:
-    explicit Reader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
-        if (!stream_) throw Error(ErrorKind::Input, path_, "cannot be opened");
-        stream_.seekg(0, std::ios::end);
-        size_ = stream_.tellg();
-        stream_.seekg(0);
-    }
-
-    std::int64_t size() const { return size_; }
-    std::int64_t position() { return stream_.tellg(); }
-    void seek(std::int64_t position) { stream_.seekg(position); }
-    void skip(std::uint64_t bytes) {
-        need(bytes);
-        stream_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
-    }
-
-    template <class T>
-    T number() {
-        T value;
-        bytes(reinterpret_cast<char*>(&value), sizeof(T));
-        return value;
-    }
-    std::string text(std::uint64_t length) {
-        need(length);
-        std::string out(length, '\0');
-        bytes(out.data(), length);
-        return out;
-    }
-    // OpenVDB's strings: 32-bit length, bytes.
-    std::string text() { return text(number<std::uint32_t>()); }
-
-    [[noreturn]] void fail(const std::string& what, const std::string& hint = {}) const {
-        throw Error(ErrorKind::Input, path_, what, hint);
-    }
-    [[noreturn]] void fail_short() const {
-        fail(fmt::format("the file is cut short or broken ({} bytes)", size_),
-             "copy or write it again");
-    }
-
-  private:
-    void need(std::uint64_t bytes) {
-        const auto at = static_cast<std::int64_t>(stream_.tellg());
-        if (at < 0 || bytes > static_cast<std::uint64_t>(size_ - at)) fail_short();
-    }
-    void bytes(char* out, std::uint64_t length) {
-        need(length);
-        stream_.read(out, static_cast<std::streamsize>(length));
-        if (!stream_) fail_short();
-    }
-
-    std::string path_;
-    std::ifstream stream_;
-    std::int64_t size_ = 0;
-};
-
 template <class T>
-std::string components(Reader& in, int count) {
+std::string components(VdbBytes& in, int count) {
     std::string out;
     for (int c = 0; c < count; ++c) {
         if (c > 0) out += ' ';
@@ -87,7 +29,7 @@ std::string components(Reader& in, int count) {
 }
 
 // The value of one metadatum as text; empty for types that mean nothing outside of the library.
-std::string metadata_value(Reader& in, const std::string& type, std::uint32_t length) {
+std::string metadata_value(VdbBytes& in, const std::string& type, std::uint32_t length) {
     const auto is = [&](const char* name, std::size_t size) {
         return type == name && length == size;
     };
@@ -107,7 +49,7 @@ std::string metadata_value(Reader& in, const std::string& type, std::uint32_t le
     return {};
 }
 
-std::map<std::string, std::string> read_metadata(Reader& in) {
+std::map<std::string, std::string> read_metadata(VdbBytes& in) {
     std::map<std::string, std::string> out;
     const auto count = in.number<std::uint32_t>();
     for (std::uint32_t n = 0; n < count; ++n) {
@@ -120,7 +62,7 @@ std::map<std::string, std::string> read_metadata(Reader& in) {
 }
 
 // What the file is instead, for the most likely confusions.
-void refuse_other_kinds(const Reader& in, const std::string& start) {
+void refuse_other_kinds(const VdbBytes& in, const std::string& start) {
     if (start.starts_with("NanoVDB")) {
         in.fail("this is a NanoVDB file, which gischt does not read",
                 "convert it: nanovdb_convert in.nvdb out.vdb (from the OpenVDB package)");
@@ -136,7 +78,7 @@ void refuse_other_kinds(const Reader& in, const std::string& start) {
     in.fail("not a VDB file", "a VDB file begins with the bytes 20 42 44 56");
 }
 
-void read_prologue(Reader& in, VdbHeader& header) {
+void read_prologue(VdbBytes& in, VdbHeader& header) {
     const std::string start =
         in.text(static_cast<std::uint64_t>(std::min<std::int64_t>(8, in.size())));
     if (start.empty()) in.fail("the file is empty");
@@ -160,7 +102,7 @@ void read_prologue(Reader& in, VdbHeader& header) {
     }
 }
 
-VdbEntry read_descriptor(Reader& in, std::string& parent) {
+VdbEntry read_descriptor(VdbBytes& in, std::string& parent) {
     constexpr std::string_view half = "_HalfFloat";
     VdbEntry entry;
     entry.unique_name = in.text();
@@ -196,20 +138,9 @@ std::string VdbEntry::grid_class() const {
 }
 
 VdbHeader read_vdb_header(const std::string& path) {
-    std::error_code ignored;
-    const auto status = std::filesystem::status(path, ignored);
-    if (!std::filesystem::exists(status)) {
-        throw Error(ErrorKind::Input, path, "there is no such file");
-    }
-    if (!std::filesystem::is_regular_file(status)) {
-        throw Error(ErrorKind::Input, path,
-                    std::filesystem::is_directory(status) ? "this is a folder, not a VDB file"
-                                                          : "this is not a regular file");
-    }
-
     // Prologue and metadata of the file, then the table of contents; OpenVDB writes a grid's
     // descriptor right before its data, so the next one is found at its end.
-    Reader in(path);
+    VdbBytes in(path);
     VdbHeader header;
     header.size = in.size();
     read_prologue(in, header);
@@ -232,6 +163,7 @@ VdbHeader read_vdb_header(const std::string& path) {
         entry.compression = in.number<std::uint32_t>();
         entry.metadata = read_metadata(in);
         entry.data = in.position();
+        entry.transform = in.text();
         if (entry.data > entry.end) in.fail_short();
         index.emplace(entry.unique_name, n);
         in.seek(entry.end);

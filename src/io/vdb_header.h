@@ -19,6 +19,7 @@ struct VdbEntry {
     std::uint32_t compression = 0;   // OpenVDB's flags
     std::int64_t begin = 0;          // grid's metadata
     std::int64_t data = 0, end = 0;  // transform and tree
+    std::string transform;           // kind of map: UniformScaleMap, AffineMap ...
     std::map<std::string, std::string> metadata;
 
     // "float" for "Tree_float_5_4_3".

@@ -7,6 +7,9 @@
 #include <cctype>
 #include <set>
 
+#include "base/error.h"
+#include "io/vdb.h"
+
 namespace gischt {
 
 namespace {
@@ -149,6 +152,24 @@ TemperatureUnit temperature_unit(const std::map<std::string, std::string>& grid_
         return {"K", 0, fmt::format("its largest value is {:.4g}", largest)};
     }
     return {"relative", 0, fmt::format("its largest value is {:.4g}", largest)};
+}
+
+std::string unit_of(const std::string& field, const std::map<std::string, std::string>& metadata) {
+    if (field == "density" || field == "flame") return "1";
+    if (field == "velocity") return "m/s";
+    if (field == "pressure") return "Pa";
+    if (field != "temperature") return {};
+    const std::string stated = value_of(metadata, "temperature_unit");
+    return stated.empty() ? "K" : stated;
+}
+
+HalfVoxel half_voxel_from(const std::string& word) {
+    if (word == "auto") return HalfVoxel::Auto;
+    if (word == "follow") return HalfVoxel::Follow;
+    if (word == "center") return HalfVoxel::Center;
+    const std::vector<std::string> valid{"auto", "follow", "center"};
+    throw Error(ErrorKind::Usage, "half_voxel", fmt::format("'{}' is not a choice", word),
+                hint_for(word, valid));
 }
 
 }  // namespace gischt

@@ -47,4 +47,8 @@ struct TemperatureUnit {
 TemperatureUnit temperature_unit(const std::map<std::string, std::string>& grid_metadata,
                                  VdbOrigin origin, float largest);
 
+// The unit of a customary field for the file's metadata: "K" or the frame's temperature_unit for
+// temperature, "m/s", "1", "Pa"; empty for fields of no custom.
+std::string unit_of(const std::string& field, const std::map<std::string, std::string>& metadata);
+
 }  // namespace gischt
