@@ -71,7 +71,6 @@ struct Atmosphere::Step {
     double height;     // m above ground
     double length;     // m
     Columns density;   // at the point
-    Spectrum reaches;  // transmittance from the ray's origin to the start of the piece
     Spectrum through;  // transmittance of the piece
 };
 
@@ -172,12 +171,13 @@ Atmosphere::Spectrum Atmosphere::transmittance(double height, double mu) const {
 }
 
 template <class F>
-bool Atmosphere::walk(double height, const Vec3d& direction, int steps, Columns& so_far, Vec3d& end,
-                      F&& f) const {
+bool Atmosphere::walk(double height, const Vec3d& direction, int steps, Spectrum& reaches,
+                      Vec3d& end, F&& f) const {
     const Vec3d origin{0, 0, ground_radius + height};
     const bool grounded = meets_ground(origin.z, direction.z);
     const double reach = grounded ? distance_to_ground(origin.z, direction.z)
                                   : distance_to_shell(origin.z, direction.z, top_radius);
+    reaches.fill(1);
     Step step;
     for (int s = 0; s < steps; ++s) {
         // Pieces grow with the distance, as the air is densest near the ground.
@@ -187,12 +187,10 @@ bool Atmosphere::walk(double height, const Vec3d& direction, int steps, Columns&
         step.point = origin + 0.5 * (t0 + t1) * direction;
         step.height = std::max(0.0, length(step.point) - ground_radius);
         step.density = density(step.height);
-        step.reaches = attenuation(so_far);
-        const Columns piece{step.density.air * step.length, step.density.haze * step.length,
-                            step.density.ozone * step.length};
-        step.through = attenuation(piece);
-        f(step);
-        so_far = {so_far.air + piece.air, so_far.haze + piece.haze, so_far.ozone + piece.ozone};
+        step.through = attenuation({step.density.air * step.length, step.density.haze * step.length,
+                                    step.density.ozone * step.length});
+        f(step, reaches);
+        for (std::size_t b = 0; b < bands; ++b) reaches[b] *= step.through[b];
     }
     end = origin + reach * direction;
     return grounded;
@@ -205,31 +203,31 @@ Atmosphere::Spectrum Atmosphere::radiance(double height, const Vec3d& direction,
     const auto phase_haze = static_cast<double>(
         HenyeyGreensteinPhase{haze_mean_cosine}.value(static_cast<float>(cosine)));
     Spectrum sum{};
-    Columns so_far;
+    Spectrum arrives;
     Vec3d end;
-    const bool grounded = walk(height, direction, 40, so_far, end, [&](const Step& step) {
-        const double mu_sun = dot(step.point, sun) / length(step.point);
-        const Spectrum lit = transmittance(step.height, mu_sun);
-        const Spectrum psi = multiple_scattering(step.height, mu_sun);
-        for (std::size_t b = 0; b < bands; ++b) {
-            const double air = air_[b] * step.density.air;
-            const double haze = haze_scatter_[b] * step.density.haze;
-            const double extinction =
-                air + haze_[b] * step.density.haze + ozone_[b] * step.density.ozone;
-            if (!(extinction > 0)) continue;
-            const double source =
-                lit[b] * (air * phase_air + haze * phase_haze) + psi[b] * (air + haze);
-            sum[b] += solar_[b] * step.reaches[b] * source * (1 - step.through[b]) / extinction;
-        }
-    });
+    const bool grounded =
+        walk(height, direction, 32, arrives, end, [&](const Step& step, const Spectrum& reaches) {
+            const double mu_sun = dot(step.point, sun) / length(step.point);
+            const Spectrum lit = transmittance(step.height, mu_sun);
+            const Spectrum psi = multiple_scattering(step.height, mu_sun);
+            for (std::size_t b = 0; b < bands; ++b) {
+                const double air = air_[b] * step.density.air;
+                const double haze = haze_scatter_[b] * step.density.haze;
+                const double extinction =
+                    air + haze_[b] * step.density.haze + ozone_[b] * step.density.ozone;
+                if (!(extinction > 0)) continue;
+                const double source =
+                    lit[b] * (air * phase_air + haze * phase_haze) + psi[b] * (air + haze);
+                sum[b] += solar_[b] * reaches[b] * source * (1 - step.through[b]) / extinction;
+            }
+        });
     if (grounded) {
         // The ground is lit by the sun and, about evenly, by the scattered light above it.
         const double mu_sun = dot(end, sun) / length(end);
         const Spectrum lit = transmittance(0, mu_sun), psi = multiple_scattering(0, mu_sun);
-        const Spectrum reaches = attenuation(so_far);
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = lit[b] * std::max(0.0, mu_sun) + pi * psi[b];
-            sum[b] += solar_[b] * reaches[b] * ground_albedo_ / pi * irradiance;
+            sum[b] += solar_[b] * arrives[b] * ground_albedo_ / pi * irradiance;
         }
     }
     return sum;
@@ -256,31 +254,30 @@ void Atmosphere::scatter_all_orders(double height, double mu_sun, Spectrum& psi)
         const double z = 1 - 2 * (n / spokes + 0.5) / rings,
                      turn = pi * (n % spokes + 0.5) / spokes;
         const double sine = std::sqrt(1 - z * z);
-        Columns so_far;
+        Spectrum arrives;
         Vec3d end;
-        const bool grounded =
-            walk(height, {sine * std::cos(turn), sine * std::sin(turn), z}, steps, so_far, end,
-                 [&](const Step& step) {
-                     const Spectrum lit =
-                         transmittance(step.height, dot(step.point, sun) / length(step.point));
-                     for (std::size_t b = 0; b < bands; ++b) {
-                         const double scatter =
-                             air_[b] * step.density.air + haze_scatter_[b] * step.density.haze;
-                         const double extinction = air_[b] * step.density.air +
-                                                   haze_[b] * step.density.haze +
-                                                   ozone_[b] * step.density.ozone;
-                         if (!(extinction > 0)) continue;
-                         const double share =
-                             step.reaches[b] * scatter * (1 - step.through[b]) / extinction;
-                         second[b] += share * lit[b] * isotropic;
-                         again[b] += share;
-                     }
-                 });
+        const bool grounded = walk(
+            height, {sine * std::cos(turn), sine * std::sin(turn), z}, steps, arrives, end,
+            [&](const Step& step, const Spectrum& reaches) {
+                const Spectrum lit =
+                    transmittance(step.height, dot(step.point, sun) / length(step.point));
+                for (std::size_t b = 0; b < bands; ++b) {
+                    const double scatter =
+                        air_[b] * step.density.air + haze_scatter_[b] * step.density.haze;
+                    const double extinction = air_[b] * step.density.air +
+                                              haze_[b] * step.density.haze +
+                                              ozone_[b] * step.density.ozone;
+                    if (!(extinction > 0)) continue;
+                    const double share = reaches[b] * scatter * (1 - step.through[b]) / extinction;
+                    second[b] += share * lit[b] * isotropic;
+                    again[b] += share;
+                }
+            });
         if (!grounded) continue;
         const double mu_ground = dot(end, sun) / length(end);
-        const Spectrum lit = transmittance(0, mu_ground), reaches = attenuation(so_far);
+        const Spectrum lit = transmittance(0, mu_ground);
         for (std::size_t b = 0; b < bands; ++b) {
-            second[b] += reaches[b] * lit[b] * std::max(0.0, mu_ground) * ground_albedo_ / pi;
+            second[b] += arrives[b] * lit[b] * std::max(0.0, mu_ground) * ground_albedo_ / pi;
         }
     }
     // Means over the directions: the phase function 1 / 4 pi integrated over the sphere.

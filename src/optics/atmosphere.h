@@ -54,10 +54,11 @@ class Atmosphere {
     void build_multiple_scattering();
     void scatter_all_orders(double height, double mu_sun, Spectrum& psi) const;
     Spectrum multiple_scattering(double height, double mu_sun) const;
-    // Calls f for the pieces of a ray through the air, from its origin on; true if it ends on the
-    // ground, with `end` as the last state.
+    // Calls f(step, transmittance up to the step) for the pieces of a ray through the air, from its
+    // origin on; true if it ends on the ground. `reaches`: the transmittance of all, `end`: the
+    // last point, from the planet's centre.
     template <class F>
-    bool walk(double height, const Vec3d& direction, int steps, Columns& so_far, Vec3d& end,
+    bool walk(double height, const Vec3d& direction, int steps, Spectrum& reaches, Vec3d& end,
               F&& f) const;
 
     double ground_albedo_;

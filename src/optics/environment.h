@@ -56,7 +56,8 @@ class EnvironmentMap {
     std::vector<Vec3f> texels_;
     Vec3f mean_;
     Harmonics harmonics_;
-    Distribution2d distribution_{std::vector<double>{1}, 1, 1};  // over (u, v), of at most 1024 x 512 cells
+    Distribution2d distribution_{std::vector<double>{1}, 1,
+                                 1};  // over (u, v), of at most 1024 x 512 cells
 };
 
 // The same radiance from all directions.

@@ -13,7 +13,7 @@
 namespace gischt {
 namespace {
 
-constexpr int map_width = 512, map_height = 256;
+constexpr int map_width = 360, map_height = 180;
 
 // The observer stands a little above the ground, so that the land below the horizon fades into the
 // haze instead of ending in an edge.
