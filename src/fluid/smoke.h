@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "fluid/forces.h"
+#include "fluid/project.h"
+#include "fluid/smoke_params.h"
+#include "fluid/source.h"
+
+namespace gischt {
+
+// All that a later step depends on. Scalars are deviations from the ambient.
+struct SmokeState {
+    double time = 0;  // s
+    std::int64_t steps = 0;
+    FaceField velocity;            // m/s, divergence-free
+    TileField<float> potential;    // of the last projection: dt pressure / (rho h), m/s
+    double potential_dt = 0;       // its dt, s; 0: no projection yet
+    SparseField density;           // 1
+    SparseField temperature;       // T - T_ambient, K
+};
+
+struct StepStatistics {
+    SolveResult solve;
+    double max_divergence_dt = 0;
+    double kinetic_energy = 0;  // J
+    double max_speed = 0;       // m/s, largest component
+};
+
+// Smoke on a staggered grid by operator splitting (Stam 1999; Fedkiw, Stam, Jensen 2001). A step is
+// the cycle advect - decay - sources - diffusion - forces - viscosity - project: Stam's, entered
+// such that the state between steps is divergence-free.
+class SmokeSolver {
+  public:
+    // Throws Error{Usage} on impossible parameters.
+    SmokeSolver(const SmokeParams& params, const FluidWorld& world);
+    SmokeSolver(const SmokeSolver&) = delete;
+    SmokeSolver& operator=(const SmokeSolver&) = delete;
+
+    // Advances by dt > 0 seconds. Throws Error{Cancelled}, leaving a state that is good for nothing;
+    // Error{Resource} when the pressure does not converge to a finite number.
+    StepStatistics step(double dt, Job& job);
+    // The longest step that moves nothing further than `cfl` cells: air at the speed that it has,
+    // or gains from the present heat and weight, sources and solids.
+    double longest_step() const;
+    // Integral of density over the domain without what lies in solids, m^3.
+    double density_integral() const;
+
+    // Sets the state at points in metres; null leaves a quantity. Velocities are projected before
+    // they are used when `project` is set.
+    struct Initial {
+        std::function<Vec3d(const Vec3d&)> velocity;
+        std::function<double(const Vec3d&)> density, temperature;  // temperature in K
+        bool project = true;
+    };
+    void fill(const Initial& initial, Job& job);
+
+    const SmokeParams& params() const { return params_; }
+    const FluidWorld& world() const { return world_; }
+    const Domain& domain() const { return domain_; }
+    const BlockMap& blocks() const { return blocks_; }
+    const SolidField& solids() const { return solids_; }
+    const SmokeState& state() const { return state_; }
+    // Continues from another state of the same domain.
+    void set_state(SmokeState state);
+    double pressure_bytes_per_cell() const { return projection_.bytes_per_cell_iteration(); }
+
+  private:
+    void advect_all(double dt);
+    void diffuse_scalars(double dt, Job& job);
+    void diffuse_velocity(double dt, Job& job);
+    Forces forces_at(double time) const;
+    ProjectionResult project(double dt, Job& job);
+    double thermal_expansion() const;
+
+    SmokeParams params_;
+    FluidWorld world_;
+    Domain domain_;
+    BlockMap blocks_;
+    SolidField solids_;
+    Emitters emitters_;
+    Projection projection_;
+    SmokeState state_;
+    BlockSpeeds speeds_;
+    // What a sweep reads or leaves besides the state.
+    FaceField velocity_predicted_, velocity_next_;
+    SparseField density_predicted_, density_next_, temperature_predicted_, temperature_next_;
+};
+
+}  // namespace gischt

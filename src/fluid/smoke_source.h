@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "fluid/smoke.h"
+
+namespace gischt {
+
+// A smoke simulation as a source of frames: as many steps per frame as the CFL number asks for.
+class SmokeSource final : public FluidSource {
+  public:
+    SmokeSource(const SmokeParams& params, const FluidWorld& world);
+
+    Frame frame(int number, Job& job) override;
+    FrameStatistics statistics() const override { return statistics_; }
+    bool is_sequential() const override { return true; }
+    void save_state(const std::filesystem::path& path) const override;
+    void load_state(const std::filesystem::path& path) override;
+    int last_frame() const override { return frame_; }
+    Box3d bounds() const override;
+
+    // For initial conditions that no parameter gives; before the first frame.
+    SmokeSolver& solver() { return solver_; }
+    const SmokeSolver& solver() const { return solver_; }
+
+  private:
+    void advance_frame(Job& job);
+
+    SmokeSolver solver_;
+    int frame_ = 0;
+    FrameStatistics statistics_;
+};
+
+}  // namespace gischt

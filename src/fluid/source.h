@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/job.h"
+#include "fluid/solid.h"
+#include "grid/frame.h"
+
+namespace gischt {
+
+// What a scene says about the world around a fluid.
+struct FluidWorld {
+    Vec3d gravity{0, 0, -9.80665};    // m/s^2
+    double fps = 24;                  // frames per second
+    std::vector<SolidParams> solids;  // in metres of the fluid's own space
+};
+
+// What happened between two frames; one line of --stats.
+struct FrameStatistics {
+    int frame = 0;
+    double time = 0;              // s
+    int steps = 0;
+    int pressure_iterations = 0;  // of all steps
+    double pressure_residual = 0;    // largest of the steps: max|r| / max|b|
+    double max_divergence_dt = 0;    // largest of the steps: |div u| dt
+    double mass = 0;                 // kg: reference density times the integral of density
+    double kinetic_energy = 0;       // J
+    double max_speed = 0;            // m/s, largest component
+    std::int64_t cells = 0;
+    int active_tiles = 0;  // with density or temperature
+    double wall_seconds = 0;
+};
+
+// Where frames come from. Frame n shows the time n / fps: frame 0 is the state in the beginning, and
+// frame 1 the first that is written by custom.
+class FluidSource {
+  public:
+    virtual ~FluidSource() = default;
+
+    // The frame of that number. A stateless source gives any; a simulation computes all frames up to
+    // it, and throws Error{Usage} when it lies before the last one. Throws Error{Cancelled} with the
+    // state of the last whole frame kept.
+    virtual Frame frame(int number, Job& job) = 0;
+    // Of the frame given last.
+    virtual FrameStatistics statistics() const = 0;
+    // True for a simulation: frames must come in order.
+    virtual bool is_sequential() const = 0;
+
+    // Everything that a later frame depends on, in one file that appears at once; the resumed run
+    // gives the same bits as the uninterrupted one. Nothing for stateless sources. load_state()
+    // throws Error{Input} for a file that is damaged or of another domain; the source is then
+    // unchanged.
+    virtual void save_state(const std::filesystem::path& path) const = 0;
+    virtual void load_state(const std::filesystem::path& path) = 0;
+    // Number of the last frame computed or loaded; 0 in the beginning.
+    virtual int last_frame() const = 0;
+
+    // The box that the fluid can fill, m.
+    virtual Box3d bounds() const = 0;
+};
+
+}  // namespace gischt
