@@ -34,7 +34,7 @@ void print_volume(const std::string& path, Job& job) {
 void print_image(const std::string& path) {
     const Image image = read_image(path);
     fmt::print("{}: {}x{}, channels", path, image.width, image.height);
-    for (const Plane& p : image.planes) fmt::print(" {}", p.name);
+    for (const Channel& p : image.planes) fmt::print(" {}", p.name);
     fmt::print("\n");
     for (const auto& [key, value] : image.metadata.entries) fmt::print("  {} = {}\n", key, value);
 }

@@ -27,7 +27,7 @@ void for_rows(const Box3i& box, F&& f) {
 
 // The faces of a block's cells, upper ones included; they all exist, so that borders do not matter.
 float* load_faces(const FaceField& field, int axis, const Lattice& lattice, int slot,
-                        Scratch& scratch) {
+                  Scratch& scratch) {
     float* faces = scratch.array(slot + axis, lattice.count());
     gather_block_faces(field, axis, lattice, Borders::all(Border::Clamp), faces);
     return faces;
@@ -71,19 +71,20 @@ double largest(const TileField<float>& field) {
 
 }  // namespace
 
-Projection::Projection(const Domain& domain, const BlockMap& blocks, const SolidField& solids)
+PressureProjection::PressureProjection(const Domain& domain, const BlockMap& blocks,
+                                       const SolidField& solids)
     : domain_(domain), blocks_(blocks), solids_(solids), rhs_(domain.map) {
     update_solids();
 }
 
-void Projection::update_solids() {
+void PressureProjection::update_solids() {
     solver_ = std::make_unique<PoissonSolver>(domain_.map, domain_.pressure_sides(),
                                               solids_.is_empty() ? nullptr : &solids_.fraction());
 }
 
-// Minus the sum of the velocities out of each cell, weighted with the open fractions: the right-hand
-// side of the pressure, m/s.
-void Projection::flux_sums(const FaceField& velocity, TileField<float>& out) const {
+// Minus the sum of the velocities out of each cell, weighted with the open fractions: the
+// right-hand side of the pressure, m/s.
+void PressureProjection::flux_sums(const FaceField& velocity, TileField<float>& out) const {
     for_blocks(blocks_, [&](int block, Scratch& scratch) {
         const Box3i cells = blocks_.cells(block);
         const Lattice lattice = Lattice::around(cells, Vec3i(0), true, domain_.is_2d());
@@ -96,9 +97,7 @@ void Projection::flux_sums(const FaceField& velocity, TileField<float>& out) con
                 faces.hi[a] += 1;
                 weigh_by_fractions(domain_, solids_, lattice, a, faces, w, u);
             }
-            const std::ptrdiff_t s = a == 0   ? 1
-                                     : a == 1 ? lattice.stride_y()
-                                              : lattice.stride_z();
+            const std::ptrdiff_t s = a == 0 ? 1 : a == 1 ? lattice.stride_y() : lattice.stride_z();
             for_rows(cells, [&](const Vec3i& first, int n) {
                 const std::ptrdiff_t at = lattice.index(first);
                 float* __restrict to = sum + at;
@@ -115,8 +114,8 @@ void Projection::flux_sums(const FaceField& velocity, TileField<float>& out) con
 }
 
 // u -= potential(c) - potential(c - 1) on faces that are not closed. Returns the integral of u^2.
-double Projection::subtract_gradient(FaceField& velocity, const TileField<float>& potential,
-                                     BlockSpeeds& speeds) const {
+double PressureProjection::subtract_gradient(FaceField& velocity, const TileField<float>& potential,
+                                             BlockSpeeds& speeds) const {
     std::vector<double> squares(static_cast<std::size_t>(blocks_.size()));
     for_blocks(blocks_, [&](int block, Scratch& scratch) {
         const Box3i cells = blocks_.cells(block);
@@ -137,9 +136,7 @@ double Projection::subtract_gradient(FaceField& velocity, const TileField<float>
                 gather_block_faces(solids_.fraction(), a, own, Borders{}, fractions);
                 w = fractions;
             }
-            const std::ptrdiff_t s = a == 0   ? 1
-                                     : a == 1 ? lattice.stride_y()
-                                              : lattice.stride_z();
+            const std::ptrdiff_t s = a == 0 ? 1 : a == 1 ? lattice.stride_y() : lattice.stride_z();
             for_rows(faces, [&](const Vec3i& first, int n) {
                 float* __restrict to = u + own.index(first);
                 const float* __restrict q = p + lattice.index(first);
@@ -164,9 +161,9 @@ double Projection::subtract_gradient(FaceField& velocity, const TileField<float>
     return tree_sum(squares) * domain_.cell_volume();
 }
 
-ProjectionResult Projection::project(FaceField& velocity, TileField<float>& potential, double dt,
-                                     double tolerance, int max_iterations, BlockSpeeds& speeds,
-                                     Job& job) {
+ProjectionResult PressureProjection::project(FaceField& velocity, TileField<float>& potential,
+                                             double dt, double tolerance, int max_iterations,
+                                             BlockSpeeds& speeds, Job& job) {
     ProjectionResult result;
     close_sides(domain_, velocity);
     flux_sums(velocity, rhs_);
@@ -188,7 +185,7 @@ ProjectionResult Projection::project(FaceField& velocity, TileField<float>& pote
     return result;
 }
 
-void Projection::measure_speeds(const FaceField& velocity, BlockSpeeds& speeds) const {
+void PressureProjection::measure_speeds(const FaceField& velocity, BlockSpeeds& speeds) const {
     for_blocks(blocks_, [&](int block, Scratch& scratch) {
         for (int a = 0; a < domain_.axes(); ++a) {
             const Lattice own{faces_of(domain_, blocks_.cells(block), a)};

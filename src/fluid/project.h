@@ -18,10 +18,10 @@ struct ProjectionResult {
 // Makes velocities divergence-free: subtracts the gradient of a pressure that vanishes outside open
 // sides and lets nothing through walls and solids. Solids cut cells by their face fractions (Batty,
 // Bertails, Bridson 2007), and push with (1 - fraction) of their own velocity.
-class Projection {
+class PressureProjection {
   public:
     // The arguments must outlive it.
-    Projection(const Domain& domain, const BlockMap& blocks, const SolidField& solids);
+    PressureProjection(const Domain& domain, const BlockMap& blocks, const SolidField& solids);
 
     // To be called whenever the solids have changed.
     void update_solids();

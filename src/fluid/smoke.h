@@ -14,11 +14,11 @@ namespace gischt {
 struct SmokeState {
     double time = 0;  // s
     std::int64_t steps = 0;
-    FaceField velocity;            // m/s, divergence-free
-    TileField<float> potential;    // of the last projection: dt pressure / (rho h), m/s
-    double potential_dt = 0;       // its dt, s; 0: no projection yet
-    SparseField density;           // 1
-    SparseField temperature;       // T - T_ambient, K
+    FaceField velocity;          // m/s, divergence-free
+    TileField<float> potential;  // of the last projection: dt pressure / (rho h), m/s
+    double potential_dt = 0;     // its dt, s; 0: no projection yet
+    SparseField density;         // 1
+    SparseField temperature;     // T - T_ambient, K
 };
 
 struct StepStatistics {
@@ -38,8 +38,8 @@ class SmokeSolver {
     SmokeSolver(const SmokeSolver&) = delete;
     SmokeSolver& operator=(const SmokeSolver&) = delete;
 
-    // Advances by dt > 0 seconds. Throws Error{Cancelled}, leaving a state that is good for nothing;
-    // Error{Resource} when the pressure does not converge to a finite number.
+    // Advances by dt > 0 seconds. Throws Error{Cancelled}, leaving a state that is good for
+    // nothing; Error{Resource} when the pressure does not converge to a finite number.
     StepStatistics step(double dt, Job& job);
     // The longest step that moves nothing further than `cfl` cells: air at the speed that it has,
     // or gains from the present heat and weight, sources and solids.
@@ -80,7 +80,7 @@ class SmokeSolver {
     BlockMap blocks_;
     SolidField solids_;
     Emitters emitters_;
-    Projection projection_;
+    PressureProjection projection_;
     SmokeState state_;
     BlockSpeeds speeds_;
     // What a sweep reads or leaves besides the state.

@@ -25,7 +25,7 @@ std::vector<float> zeros(std::size_t count) {
 
 [[noreturn]] void throw_missing(const Image& image, std::string_view name) {
     std::string there;
-    for (const Plane& p : image.planes) there += (there.empty() ? "" : ", ") + p.name;
+    for (const Channel& p : image.planes) there += (there.empty() ? "" : ", ") + p.name;
     throw Error(ErrorKind::Input, "image", fmt::format("no channel '{}'", name),
                 there.empty() ? "it has no channels" : "channels: " + there);
 }
@@ -66,20 +66,20 @@ Image Image::rgba(int width, int height) {
     return {width, height, std::array<std::string_view, 4>{"R", "G", "B", "A"}};
 }
 
-const Plane* Image::find(std::string_view channel) const {
+const Channel* Image::find(std::string_view channel) const {
     const auto it = std::find_if(planes.begin(), planes.end(),
-                                 [&](const Plane& p) { return p.name == channel; });
+                                 [&](const Channel& p) { return p.name == channel; });
     return it == planes.end() ? nullptr : &*it;
 }
 
 std::span<const float> Image::channel(std::string_view name) const& {
-    const Plane* plane = find(name);
+    const Channel* plane = find(name);
     if (!plane) throw_missing(*this, name);
     return plane->values;
 }
 
 std::span<float> Image::channel(std::string_view name) & {
-    const Plane* plane = find(name);
+    const Channel* plane = find(name);
     if (!plane) throw_missing(*this, name);
     return planes[static_cast<std::size_t>(plane - planes.data())].values;
 }

@@ -24,10 +24,10 @@ struct Metadata {
 };
 
 // One channel: width * height values, rows from top to bottom, columns from left to right.
-struct Plane {
+struct Channel {
     std::string name;  // "R", "G", "B", "A", "Z"; in a layer "direct.R"
     std::vector<float> values;
-    bool operator==(const Plane&) const = default;
+    bool operator==(const Channel&) const = default;
 };
 
 // Named float channels of one size. R, G, B are linear radiance with Rec.709 primaries and white
@@ -35,7 +35,7 @@ struct Plane {
 // Z is the distance along the view axis in metres, infinity where nothing was hit.
 struct Image {
     int width = 0, height = 0;
-    std::vector<Plane> planes;
+    std::vector<Channel> planes;
     Metadata metadata;
 
     Image() = default;
@@ -55,7 +55,7 @@ struct Image {
     }
     bool has(std::string_view channel) const { return find(channel) != nullptr; }
     // Null when there is no such channel. Linear search: look up once, not per pixel.
-    const Plane* find(std::string_view channel) const;
+    const Channel* find(std::string_view channel) const;
     // The values of a channel. Throws Error{Input}, naming the channels there are. Not on a
     // temporary image, whose values would be gone.
     std::span<float> channel(std::string_view name) &;

@@ -36,7 +36,7 @@ Image resize(const Image& image, int width, int height) {
     Image out(width, height, {});
     out.metadata = image.metadata;
     const auto columns = covers(image.width, width), rows = covers(image.height, height);
-    for (const Plane& plane : image.planes) {
+    for (const Channel& plane : image.planes) {
         const auto target = out.add_channel(plane.name);
         parallel_for(height, 4, [&](int y) {
             for (int x = 0; x < width; ++x) {
@@ -66,8 +66,8 @@ void paste(Image& image, const Image& part, int x, int y) {
     const int x0 = std::max(x, 0), x1 = std::min(x + part.width, image.width);
     const int y0 = std::max(y, 0), y1 = std::min(y + part.height, image.height);
     if (x0 >= x1) return;
-    for (Plane& plane : image.planes) {
-        const Plane* source = part.find(plane.name);
+    for (Channel& plane : image.planes) {
+        const Channel* source = part.find(plane.name);
         if (!source) continue;
         for (int row = y0; row < y1; ++row) {
             const float* from = source->values.data() + part.index(x0 - x, row - y);

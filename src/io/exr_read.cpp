@@ -199,14 +199,14 @@ void convert_colors(Image& image, const Transform& matrix) {
 
 // OpenEXR keeps channels sorted, B before R: give the colour back its usual order.
 void sort_channels(Image& image) {
-    auto rank = [](const Plane& p) {
+    auto rank = [](const Channel& p) {
         const std::string last = p.name.substr(p.name.rfind('.') + 1);  // npos + 1 is 0
         const std::size_t place = std::string("RGBA").find(last);
         const std::string layer = p.name.substr(0, p.name.size() - last.size());
         return std::make_pair(layer, last.size() == 1 && place < 4 ? place : 4);
     };
     std::stable_sort(image.planes.begin(), image.planes.end(),
-                     [&](const Plane& a, const Plane& b) { return rank(a) < rank(b); });
+                     [&](const Channel& a, const Channel& b) { return rank(a) < rank(b); });
 }
 
 Image decode(const std::string& path, const std::string& bytes) {

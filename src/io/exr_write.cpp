@@ -41,7 +41,7 @@ class MemoryOutput : public Imf::OStream {
 };
 
 // Whether half keeps 10 bits of all that is within a thousandth of the largest value.
-bool suits_half(const Plane& plane) {
+bool suits_half(const Channel& plane) {
     float largest = 0;
     for (const float v : plane.values) {
         if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
@@ -49,7 +49,7 @@ bool suits_half(const Plane& plane) {
     return largest == 0 || (largest >= 0.0625f && largest <= 65504.0f);
 }
 
-bool as_half(const Plane& plane, const ExrOptions& options) {
+bool as_half(const Channel& plane, const ExrOptions& options) {
     const auto& always = options.float_channels;
     return options.half && std::find(always.begin(), always.end(), plane.name) == always.end() &&
            suits_half(plane);
@@ -76,7 +76,7 @@ std::string encode(const std::string& path, const Image& image, const ExrOptions
     std::vector<std::vector<half>> halves(image.planes.size());
     const auto width = static_cast<std::size_t>(image.width);
     for (std::size_t i = 0; i < image.planes.size(); ++i) {
-        const Plane& plane = image.planes[i];
+        const Channel& plane = image.planes[i];
         const bool half_type = as_half(plane, options);
         const Imf::PixelType type = half_type ? Imf::HALF : Imf::FLOAT;
         header.channels().insert(plane.name, Imf::Channel(type));

@@ -15,6 +15,7 @@
 #include "optics/light_params.h"
 #include "optics/medium_params.h"
 #include "optics/surface.h"
+#include "render/method.h"
 #include "render/params.h"
 #include "scene/file_source.h"
 #include "schema/table.h"
