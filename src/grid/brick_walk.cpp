@@ -10,7 +10,7 @@ static constexpr double never = std::numeric_limits<double>::infinity();
 static constexpr int edge = BrickVolume::brick_edge;
 
 BrickWalk::BrickWalk(const BrickVolume& volume, const Ray& world, BrickGrain grain)
-    : volume_(volume), grain_(grain) {
+    : volume_(&volume), grain_(grain) {
     if (volume.size() == 0) return;
     const Vec3d o = volume.to_lattice().point(world.origin);
     Vec3d d = volume.to_lattice().vector(world.direction);
@@ -36,7 +36,7 @@ BrickWalk::BrickWalk(const BrickVolume& volume, const Ray& world, BrickGrain gra
 void BrickWalk::start(const Interval& inside) {
     t_ = inside.t0;
     t_end_ = inside.t1;
-    const Box3i& support = volume_.support();
+    const Box3i& support = volume_->support();
     for (std::size_t a = 0; a < 3; ++a) {
         const int axis = static_cast<int>(a);
         const int first = support.lo[axis] >> 3, last = (support.hi[axis] - 1) >> 3;
@@ -69,7 +69,7 @@ void BrickWalk::next_brick() {
 // Steps on until a stored brick; false at the end of the walk.
 bool BrickWalk::enter_brick() {
     for (; t_ < t_end_; next_brick()) {
-        brick_ = t_ < t_leave_ ? volume_.find({coord_[0], coord_[1], coord_[2]}) : -1;
+        brick_ = t_ < t_leave_ ? volume_->find({coord_[0], coord_[1], coord_[2]}) : -1;
         if (brick_ >= 0) return true;
     }
     return false;
@@ -129,16 +129,16 @@ bool BrickWalk::next(BrickRun& run) {
     if (grain_ == BrickGrain::Bricks) {
         if (!enter_brick()) return false;
         fill(run, t_, t_leave_);
-        run.bounds = volume_.whole(brick_);
+        run.bounds = volume_->whole(brick_);
         next_brick();
         return true;
     }
     for (;;) {
         for (; cut_at_ < cuts_; ++cut_at_) {
             const int block = cut_block_[cut_at_];
-            if (!(volume_.occupied(brick_) >> block & 1)) continue;
+            if (!(volume_->occupied(brick_) >> block & 1)) continue;
             fill(run, cut_[cut_at_], cut_[cut_at_ + 1]);
-            run.bounds = volume_.block(brick_, block);
+            run.bounds = volume_->block(brick_, block);
             ++cut_at_;
             return true;
         }

@@ -46,7 +46,7 @@ class BrickWalk {
     void split_brick();
     void fill(BrickRun& run, double t0, double t1) const;
 
-    const BrickVolume& volume_;
+    const BrickVolume* volume_;
     BrickGrain grain_;
     std::array<double, 3> origin_, direction_, inverse_;
     Vec3f step_;

@@ -13,28 +13,28 @@
 namespace gischt {
 namespace {
 
-// The part of a ray inside a solid.
-Interval inside(const Sphere& sphere, const Ray& ray) {
-    const Vec3d o = ray.origin - sphere.center;
-    const double a = dot(ray.direction, ray.direction), b = dot(o, ray.direction) / a;
+// The part of a ray inside the unit ball.
+Interval clip_to_ball(const Ray& ray) {
+    const double a = dot(ray.direction, ray.direction);
+    const double b = dot(ray.origin, ray.direction) / a;
     // The squared distance of the line to the centre, without the cancellation of b^2 - c.
-    const Vec3d nearest = o - b * ray.direction;
-    const double d = (sphere.radius * sphere.radius - dot(nearest, nearest)) / a;
+    const Vec3d nearest = ray.origin - b * ray.direction;
+    const double d = (1 - dot(nearest, nearest)) / a;
     if (!(d > 0)) return {};
     const double root = std::sqrt(d);
     return {std::max(ray.t_min, -b - root), std::min(ray.t_max, -b + root)};
 }
-Interval inside(const SolidBox& box, const Ray& ray) {
-    const Transform back = box.rotation.inverse();
-    return clip(
-        {back.vector(ray.origin - box.center), back.vector(ray.direction), ray.t_min, ray.t_max},
-        {-0.5 * box.size, 0.5 * box.size});
-}
-Interval inside(const Plane&, const Ray&) {
-    return {};
-}
+
+constexpr Box3d unit_box{{-1, -1, -1}, {1, 1, 1}};
 
 }  // namespace
+
+Transform Region::to_world() const {
+    Transform t = rotation;
+    for (int a = 0; a < 3; ++a) t.column[static_cast<std::size_t>(a)] *= 0.5 * size[a];
+    t.translation = center;
+    return t;
+}
 
 Medium::Medium(const Frame& frame, const MediumParams& params, double time, Job& job) {
     take(params, time);
@@ -51,19 +51,21 @@ Medium::Medium(const Frame& frame, const MediumParams& params, double time, Job&
              {.non_negative = true, .also = emission_ == EmissionKind::Flame ? &*b.glow : nullptr},
              lattice, job);
     majorant_ = strength_ * density_scale_ * b.density.max();
+    if (b.density.size() > 0) cell_size_ = b.density.cell_size();
 }
 
-Medium::Medium(const Shape& shape, const MediumParams& params, double time, double temperature) {
+Medium::Medium(const Region& region, const MediumParams& params, double time, double temperature) {
     take(params, time);
-    if (std::holds_alternative<Plane>(shape)) {
-        throw Error(ErrorKind::Usage, "medium", "a half space cannot be filled",
-                    "take a sphere or a box");
+    if (!(min_component(region.size) > 0)) {
+        throw Error(ErrorKind::Usage, "medium", "the region has no volume",
+                    "give it a positive size");
     }
     if (emission_ == EmissionKind::Flame) {
         throw Error(ErrorKind::Usage, "medium", "emission 'flame' needs a frame with that field",
                     "take 'blackbody'");
     }
-    kind_ = Homogeneous{shape, static_cast<float>(temperature)};
+    const Transform to_world = region.to_world();
+    kind_ = Homogeneous{region.kind, to_world, to_world.inverse(), static_cast<float>(temperature)};
     majorant_ = strength_ * density_scale_;
 }
 
@@ -113,20 +115,28 @@ BrickVolume Medium::pack(const Frame& frame, const std::string& name, const Bric
 
 Box3d Medium::bounds() const {
     if (const Bricks* b = std::get_if<Bricks>(&kind_)) return b->density.world_bounds();
-    return gischt::bounds(std::get<Homogeneous>(kind_).shape);
+    return std::get<Homogeneous>(kind_).to_world.bounds(unit_box);
 }
 
-double Medium::cell_size() const {
-    const Bricks* b = std::get_if<Bricks>(&kind_);
-    return b && b->density.size() > 0 ? b->density.cell_size() : 0;
+Medium::Lattice Medium::lattice() const {
+    if (const Bricks* b = std::get_if<Bricks>(&kind_)) {
+        const Box3i& support = b->density.support();
+        return {b->density.to_world(), {Vec3d(support.lo), Vec3d(support.hi)}};
+    }
+    const Box3d box = bounds();
+    const double h = max_component(box.size()) / 64;
+    return {Transform::scale_translate(h, box.lo), {{}, box.size() / Vec3d(h)}};
 }
 
 float Medium::density(const Vec3d& point) const {
     if (const Bricks* b = std::get_if<Bricks>(&kind_)) {
         return density_scale_ * b->density.sample(point);
     }
-    const Shape& shape = std::get<Homogeneous>(kind_).shape;
-    return signed_distance(shape, point) <= 0 ? density_scale_ : 0.0f;
+    const Homogeneous& solid = std::get<Homogeneous>(kind_);
+    const Vec3d p = solid.to_unit.point(point);
+    const bool inside =
+        solid.shape == Region::Kind::Box ? max_component(abs(p)) <= 1 : dot(p, p) <= 1;
+    return inside ? density_scale_ : 0.0f;
 }
 
 MediumPoint Medium::at(const Vec3d& point) const {
@@ -181,14 +191,16 @@ void Medium::emissions(const MediumSegment& segment, std::span<const float> t, c
     }
 }
 
-SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain) : medium_(medium) {
+SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain)
+    : medium_(&medium) {
     if (const auto* b = std::get_if<Medium::Bricks>(&medium.kind_)) {
         bricks_.emplace(b->density, ray, grain);
         return;
     }
     const auto& solid = std::get<Medium::Homogeneous>(medium.kind_);
-    const Interval t =
-        std::visit([&ray](const auto& shape) { return inside(shape, ray); }, solid.shape);
+    const Ray unit{solid.to_unit.point(ray.origin), solid.to_unit.vector(ray.direction), ray.t_min,
+                   ray.t_max};
+    const Interval t = solid.shape == Region::Kind::Box ? clip(unit, unit_box) : clip_to_ball(unit);
     done_ = t.is_empty();
     once_.t0 = once_.anchor = t.t0;
     once_.t1 = t.t1;
@@ -203,7 +215,7 @@ bool SegmentWalk::next(MediumSegment& segment) {
     }
     BrickRun run;
     if (!bricks_->next(run)) return false;
-    const float scale = medium_.strength_ * medium_.density_scale_;
+    const float scale = medium_->strength_ * medium_->density_scale_;
     segment.t0 = segment.anchor = run.t0;
     segment.t1 = run.t1;
     segment.min = scale * run.bounds.min;

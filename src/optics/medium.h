@@ -11,7 +11,6 @@
 #include "optics/blackbody.h"
 #include "optics/medium_params.h"
 #include "optics/phase.h"
-#include "shape/shape.h"
 
 namespace gischt {
 
@@ -40,6 +39,21 @@ struct MediumSegment {
     Vec3f entry, step;
 };
 
+// A box or an ellipsoid in space, filled evenly.
+struct Region {
+    enum class Kind { Box, Ellipsoid };
+    Kind kind = Kind::Box;
+    Vec3d center, size{1, 1, 1};  // metres: edges or diameters, before the rotation
+    Transform rotation{};         // around the centre, no translation, no scale
+
+    static Region box(const Box3d& b) { return {Kind::Box, 0.5 * (b.lo + b.hi), b.size(), {}}; }
+    static Region sphere(const Vec3d& center, double radius) {
+        return {Kind::Ellipsoid, center, Vec3d(2 * radius), {}};
+    }
+    // From [-1,1]^3, or the unit ball, to metres.
+    Transform to_world() const;
+};
+
 class SegmentWalk;
 
 // A participating medium at one moment: extinction, scattering, emission and a phase function as
@@ -51,9 +65,9 @@ class Medium {
     // zero and those that are not finite count as 0; the latter are reported to the job. Throws
     // Error{Input} when a field is missing, naming those there are.
     Medium(const Frame& frame, const MediumParams& params, double time, Job& job);
-    // Density 1 inside a solid, nothing outside; planes are refused with Error{Usage}. Emission by
-    // blackbody takes `temperature` in K.
-    Medium(const Shape& shape, const MediumParams& params, double time, double temperature = 0);
+    // Density 1 inside a region, nothing outside. Emission by blackbody takes `temperature` in K.
+    // Throws Error{Usage} when the region has no volume.
+    Medium(const Region& region, const MediumParams& params, double time, double temperature = 0);
 
     const CrossSections& cross_sections() const { return cross_sections_; }
     const PhaseFunction& phase() const { return phase_; }
@@ -66,7 +80,15 @@ class Medium {
     // Box around all that absorbs, scatters or glows, metres; empty where nothing does.
     Box3d bounds() const;
     // Edge of the smallest detail in metres (a voxel), 0 for homogeneous media.
-    double cell_size() const;
+    double cell_size() const { return cell_size_; }
+    // Where look-up grids are best laid: a map to metres whose integer points are the samples of
+    // the density, and the box in it that holds everything. For homogeneous media the longest edge
+    // of the box counts 64.
+    struct Lattice {
+        Transform to_world;
+        Box3d box;
+    };
+    Lattice lattice() const;
 
     // At a point in metres, for probes; along rays use segments.
     float density(const Vec3d& point) const;
@@ -89,7 +111,8 @@ class Medium {
         std::optional<BrickVolume> glow;  // temperature or flame, on the lattice of density
     };
     struct Homogeneous {
-        Shape shape;
+        Region::Kind shape;
+        Transform to_world, to_unit;  // to_unit: metres to [-1,1]^3
         float temperature = 0;
     };
 
@@ -103,6 +126,7 @@ class Medium {
     PhaseFunction phase_;
     MultipleScattering multiple_scattering_;
     EmissionKind emission_ = EmissionKind::None;
+    double cell_size_ = 0;
     float density_scale_ = 1, strength_ = 0, majorant_ = 0, emission_scale_ = 1;
     Vec2f temperature_range_{0, 1};
     std::shared_ptr<const BlackbodyTable> blackbody_;
@@ -115,7 +139,7 @@ class SegmentWalk {
     bool next(MediumSegment& segment);
 
   private:
-    const Medium& medium_;
+    const Medium* medium_;
     std::optional<BrickWalk> bricks_;
     MediumSegment once_;  // the single run of a homogeneous medium
     bool done_ = false;

@@ -59,4 +59,28 @@ Vec3f optical_depth(std::span<const std::shared_ptr<const Medium>> media, const 
     return sum;
 }
 
+void densities_on_line(const Medium& medium, const Ray& ray, double t0, double dt,
+                       std::span<float> out) {
+    std::fill(out.begin(), out.end(), 0.0f);
+    const auto count = static_cast<double>(out.size());
+    // A margin of half a step, so that the ends do not fall out by rounding.
+    SegmentWalk walk = medium.segments(
+        {ray.origin, ray.direction, t0 - 0.5 * dt, t0 + (count - 0.5) * dt}, BrickGrain::Bricks);
+    MediumSegment s;
+    std::array<float, 32> t;
+    while (walk.next(s)) {
+        auto i = static_cast<std::size_t>(std::clamp(std::ceil((s.t0 - t0) / dt), 0.0, count));
+        const auto end =
+            static_cast<std::size_t>(std::clamp(std::ceil((s.t1 - t0) / dt), 0.0, count));
+        while (i < end) {
+            const std::size_t n = std::min(end - i, t.size());
+            for (std::size_t k = 0; k < n; ++k) {
+                t[k] = static_cast<float>(t0 + static_cast<double>(i + k) * dt - s.anchor);
+            }
+            medium.densities(s, {t.data(), n}, out.data() + i);
+            i += n;
+        }
+    }
+}
+
 }  // namespace gischt

@@ -26,4 +26,8 @@ float density_integral(const Medium& medium, const Ray& ray, const DepthSteps& s
 Vec3f optical_depth(std::span<const std::shared_ptr<const Medium>> media, const Ray& ray,
                     const DepthSteps& steps = {}, std::int64_t* lookups = nullptr);
 
+// Densities at t0 + i dt along a ray, i < out.size(), dt > 0; zero where there is no medium.
+void densities_on_line(const Medium& medium, const Ray& ray, double t0, double dt,
+                       std::span<float> out);
+
 }  // namespace gischt

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/march/march_params.h"
+
+namespace gischt {
+
+const Table<MarchParams>& march_table() {
+    static const Table<MarchParams> table =
+        Table<MarchParams>("march",
+                           "Ray marching with direct light: eq. 19, a second march to each light")
+            .add("step", &MarchParams::step,
+                 {.unit = "voxels",
+                  .help = "Largest step along a camera ray",
+                  .min = 0.01,
+                  .max = 16})
+            .add("step_depth", &MarchParams::step_depth,
+                 {.help = "Largest optical depth of a step: dense media get shorter ones",
+                  .min = 0.001,
+                  .max = 100})
+            .add("shadow_step", &MarchParams::shadow_step,
+                 {.unit = "voxels", .help = "Step of the march to a light", .min = 0.01, .max = 16})
+            .add("cutoff", &MarchParams::cutoff,
+                 {.help = "Transmittance at which a camera ray ends", .min = 0, .max = 0.1})
+            .add("light_cache", &MarchParams::light_cache,
+                 {.help = "Compute the light on grids once per frame; off, every step marches to "
+                          "every light and samples the sky: slow, the reference"})
+            .add("cache_nodes", &MarchParams::cache_nodes,
+                 {.help = "Most nodes of one grid; a larger volume gets a coarser grid",
+                  .min = 1000})
+            .add("sky_spacing", &MarchParams::sky_spacing,
+                 {.unit = "voxels",
+                  .help = "Distance of the nodes of the grid of sky light",
+                  .min = 1,
+                  .max = 64})
+            .add("sky_directions", &MarchParams::sky_directions,
+                 {.help = "Directions from which that grid takes the sky", .min = 24, .max = 4096})
+            .add("sky_samples", &MarchParams::sky_samples,
+                 {.help = "Directions of the sky per sample at a point of a surface; without "
+                          "light_cache at every step",
+                  .min = 1,
+                  .max = 1024});
+    return table;
+}
+
+}  // namespace gischt

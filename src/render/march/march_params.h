@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "schema/table.h"
+
+namespace gischt {
+
+// The parameters of the march: eq. 19 along camera rays, light by a second march or from grids.
+struct MarchParams {
+    double step = 1;          // largest step in voxels
+    double step_depth = 0.5;  // largest optical depth of a step
+    double shadow_step = 1;   // step of the second march in voxels
+    double cutoff = 1e-3;     // the march ends at this transmittance
+
+    bool light_cache = true;                // light on grids, computed once for a frame
+    std::int64_t cache_nodes = 40'000'000;  // nodes of one grid; beyond, it is made coarser
+    int sky_spacing = 2;                    // voxels between the nodes of a grid of sky light
+    int sky_directions = 128;               // from which the grid takes the sky
+
+    int sky_samples = 4;  // directions per surface point; without cache per step too
+};
+
+const Table<MarchParams>& march_table();
+
+}  // namespace gischt

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/job.h"
+#include "optics/medium_depth.h"
+#include "optics/view.h"
+#include "render/march/march_params.h"
+#include "render/march/sun_depth.h"
+
+namespace gischt {
+
+// One term of the approximation of multiple scattering; the first is single scattering itself.
+struct Octave {
+    float attenuation = 1, contribution = 1;
+    PhaseFunction phase;
+};
+
+// Light that comes from one direction at each point: a sun, a point, a spot.
+struct NarrowLight {
+    const Light* light = nullptr;
+    bool is_infinite = false;
+    Vec3d direction;  // unit, towards an infinite light's centre
+    Vec3f weight;     // W/m^2 of an infinite light
+};
+
+// A medium with what was computed for it once per frame.
+struct MarchMedium {
+    const Medium* medium = nullptr;
+    Vec3f extinction, scattering;  // 1/m at density 1
+    double feature = 1;            // metres: a voxel, or 1/64 of a homogeneous medium
+    std::vector<Octave> octaves;
+    // Towards each narrow light, where there is one.
+    std::vector<std::unique_ptr<const SunDepth>> sun_depth;
+};
+
+// A view made ready to march through.
+struct MarchScene {
+    MarchScene(const View& the_view, const MarchParams& the_params, Job& job);
+
+    const View& view;
+    const MarchParams& params;
+    std::vector<MarchMedium> media;
+    std::vector<NarrowLight> narrow;
+    std::vector<const Light*> broad;  // from all of the sky
+    bool is_grey = false;             // all channels of all media have the same extinction
+
+    // Optical depth from a point to a narrow light through all media; from the caches where they
+    // are allowed and there.
+    Vec3f depth_to(std::size_t narrow_light, const Vec3d& point, const Vec3d& direction,
+                   double distance, bool cached) const;
+    DepthSteps shadow_steps() const { return {params.shadow_step, 16}; }
+};
+
+}  // namespace gischt

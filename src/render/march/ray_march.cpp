@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/march/ray_march.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/color.h"
+#include "render/march/fast_exp.h"
+
+namespace gischt {
+namespace {
+
+// Dimensions of a sample; the filter takes 0.
+enum : std::uint32_t {
+    DimensionJitter = 1,
+    DimensionSun = 2,
+    DimensionSky = 3,
+    DimensionStep = 16
+};
+
+Vec3f fast_exp(const Vec3f& x) {
+    return {gischt::fast_exp(x.x), gischt::fast_exp(x.y), gischt::fast_exp(x.z)};
+}
+
+// (1 - exp(-e ds)) / e, which is ds where nothing absorbs.
+float source_length(float e, float transmittance, float ds) {
+    const float x = e * ds;
+    return x < 1e-3f ? ds * (1 - 0.5f * x) : (1 - transmittance) / e;
+}
+
+}  // namespace
+
+RayMarcher::RayMarcher(const MarchScene& scene) : scene_(scene) {
+    for (const MarchMedium& m : scene.media) {
+        phase_offset_.push_back(phase_stride_);
+        phase_stride_ += m.octaves.size();
+    }
+    phase_weight_.resize(phase_stride_ * scene.narrow.size());
+}
+
+// The phase functions towards lights at infinity are the same all along the ray.
+void RayMarcher::weigh_phases(const Ray& ray) {
+    const Vec3d forward = normalize(ray.direction);
+    for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
+        if (!scene_.narrow[l].is_infinite) continue;
+        const auto cosine = static_cast<float>(dot(scene_.narrow[l].direction, forward));
+        std::size_t at = l * phase_stride_;
+        for (const MarchMedium& m : scene_.media) {
+            for (const Octave& o : m.octaves) {
+                phase_weight_[at++] = o.contribution * value(o.phase, cosine);
+            }
+        }
+    }
+}
+
+MarchedRay RayMarcher::operator()(const Ray& camera_ray, const MarchSampler& sampler) {
+    result_ = {};
+    step_ = 0;
+    ++rays;
+    Ray ray = camera_ray;
+    const auto hit = scene_.view.surfaces.intersect(ray);
+    if (hit) ray.t_max = hit->t;
+    weigh_phases(ray);
+
+    // All media at once: between two neighbouring ends of segments the set of media is constant.
+    walkers_.clear();
+    for (std::size_t m = 0; m < scene_.media.size(); ++m) {
+        walkers_.push_back({scene_.media[m].medium->segments(ray, BrickGrain::Bricks), {}, m});
+        walkers_.back().advance();
+    }
+    double t = ray.t_min;
+    const auto cutoff = static_cast<float>(scene_.params.cutoff);
+    while (max_component(result_.transmittance) > cutoff) {
+        double t0 = ray.t_max, t1 = ray.t_max;
+        for (const Walker& w : walkers_) t0 = std::min(t0, std::max(t, w.segment.t0));
+        if (!(t0 < ray.t_max)) break;
+        for (Walker& w : walkers_) {
+            w.is_active = w.segment.t0 <= t0;
+            t1 = std::min(t1, w.is_active ? w.segment.t1 : w.segment.t0);
+        }
+        if (t0 < t1) march_interval(ray, t0, t1, sampler);
+        t = t1;
+        for (Walker& w : walkers_) {
+            if (w.segment.t1 <= t) w.advance();
+        }
+    }
+
+    if (max_component(result_.transmittance) <= cutoff) {
+        result_.transmittance = {};
+    } else if (hit) {
+        const float seen = luminance(result_.transmittance);
+        result_.radiance += result_.transmittance * shade(*hit, sampler);
+        result_.depth += seen * static_cast<float>(hit->t);
+        result_.opacity += seen;
+        result_.transmittance = {};
+    }
+    return result_;
+}
+
+// Equal steps, jittered together: short enough for the voxels and for the optical depth.
+void RayMarcher::march_interval(const Ray& ray, double t0, double t1, const MarchSampler& sampler) {
+    const double metres = (t1 - t0) * length(ray.direction);
+    double steps = 1, majorant = 0;
+    bool is_visible = false;
+    for (const Walker& w : walkers_) {
+        if (!w.is_active) continue;
+        const MarchMedium& m = scene_.media[w.medium];
+        steps = std::max(steps, metres / (scene_.params.step * m.feature));
+        majorant += static_cast<double>(w.segment.max);
+        is_visible = is_visible || w.segment.max > 0 || m.medium->is_emissive();
+    }
+    if (!is_visible) return;
+    steps = std::max(steps, metres * majorant / scene_.params.step_depth);
+    const int n = static_cast<int>(std::ceil(std::min(steps, 1e5)));
+    const double dt = (t1 - t0) / n;
+    const auto cutoff = static_cast<float>(scene_.params.cutoff);
+    const auto jitter = static_cast<double>(sampler.two(DimensionJitter).x);
+    std::array<double, batch> t;
+    for (int first = 0; first < n; first += static_cast<int>(batch)) {
+        const std::size_t count = std::min(batch, static_cast<std::size_t>(n - first));
+        for (std::size_t i = 0; i < count; ++i) {
+            t[i] = t0 + (first + static_cast<double>(i) + jitter) * dt;
+        }
+        march_batch(ray, {t.data(), count}, static_cast<float>(metres / n), sampler);
+        if (max_component(result_.transmittance) <= cutoff) return;
+    }
+}
+
+// Up to 16 steps of `length` metres: eq. 19.
+void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float length,
+                             const MarchSampler& sampler) {
+    std::array<float, batch> local;
+    for (Walker& w : walkers_) {
+        if (!w.is_active) continue;
+        const Medium& medium = *scene_.media[w.medium].medium;
+        for (std::size_t i = 0; i < t.size(); ++i) {
+            local[i] = static_cast<float>(t[i] - w.segment.anchor);
+        }
+        medium.densities(w.segment, {local.data(), t.size()}, w.density.data());
+        lookups += static_cast<std::int64_t>(t.size());
+        if (medium.is_emissive()) {
+            medium.emissions(w.segment, {local.data(), t.size()}, w.density.data(),
+                             w.emission.data());
+        }
+    }
+    for (std::size_t i = 0; i < t.size(); ++i, ++step_) {
+        const Vec3d point = ray.at(t[i]);
+        Vec3f extinction, source;
+        for (const Walker& w : walkers_) {
+            if (!w.is_active) continue;
+            const MarchMedium& m = scene_.media[w.medium];
+            const float density = w.density[i];
+            if (m.medium->is_emissive()) source += w.emission[i];
+            if (density == 0) continue;
+            extinction += density * m.extinction;
+            source += density * m.scattering * in_scattered(w.medium, ray, point, sampler);
+        }
+        const Vec3f transmittance = fast_exp(-length * extinction);
+        const Vec3f gain{source_length(extinction.x, transmittance.x, length),
+                         source_length(extinction.y, transmittance.y, length),
+                         source_length(extinction.z, transmittance.z, length)};
+        result_.radiance += result_.transmittance * gain * source;
+        const float lost = luminance(result_.transmittance * (Vec3f(1) - transmittance));
+        result_.depth += lost * static_cast<float>(t[i]);
+        result_.opacity += lost;
+        result_.transmittance = result_.transmittance * transmittance;
+        if (max_component(result_.transmittance) <= static_cast<float>(scene_.params.cutoff)) {
+            return;
+        }
+    }
+}
+
+// Sum over the lights of radiance times phase function, per scattering coefficient.
+Vec3f RayMarcher::in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
+                               const MarchSampler& sampler) {
+    if (max_component(scene_.media[medium].scattering) == 0) return {};
+    Vec3f sum = from_broad(medium, ray, point, sampler);
+    for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
+        sum += from_narrow(medium, l, ray, point, sampler);
+    }
+    return sum;
+}
+
+Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& ray,
+                              const Vec3d& point, const MarchSampler& sampler) {
+    const NarrowLight& narrow = scene_.narrow[light];
+    LightSample s;
+    s.direction = narrow.direction;
+    s.weight = narrow.weight;
+    if (!narrow.is_infinite) s = narrow.light->sample(point, {0, 0});
+    if (max_component(s.weight) <= 0) return {};
+    // Surfaces cast the soft shadow of the sun's disc.
+    if (!scene_.view.surfaces.is_empty()) {
+        const Vec3d towards = narrow.is_infinite
+                                  ? narrow.light->sample(point, sampler.two(DimensionSun)).direction
+                                  : s.direction;
+        if (scene_.view.surfaces.is_blocked({point, towards, 0, s.distance})) return {};
+    }
+    const Vec3f depth = scene_.depth_to(light, point, s.direction, s.distance, true);
+    const MarchMedium& m = scene_.media[medium];
+    const float* weights = phase_weight_.data() + light * phase_stride_ + phase_offset_[medium];
+    const auto cosine =
+        narrow.is_infinite ? 0.0f : static_cast<float>(dot(s.direction, normalize(ray.direction)));
+    Vec3f sum;
+    for (std::size_t o = 0; o < m.octaves.size(); ++o) {
+        const Octave& octave = m.octaves[o];
+        const float phase =
+            narrow.is_infinite ? weights[o] : octave.contribution * value(octave.phase, cosine);
+        sum += phase * (scene_.is_grey ? Vec3f(gischt::fast_exp(-octave.attenuation * depth.x))
+                                       : fast_exp(-octave.attenuation * depth));
+    }
+    return s.weight * sum;
+}
+
+// Directions drawn from the light and from the phase function, weighed by the balance heuristic
+// (Veach & Guibas 1995).
+Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
+                             const MarchSampler& sampler) {
+    const MarchMedium& m = scene_.media[medium];
+    const Vec3d forward = normalize(ray.direction);
+    const int n = scene_.params.sky_samples;
+    Vec3f sum;
+    for (const Light* light : scene_.broad) {
+        for (int i = 0; i < 2 * n; ++i) {
+            const Vec2f u = sampler.two(DimensionStep + step_, i, 2 * n);
+            Vec3d towards;
+            float light_pdf, phase_pdf;
+            if (i % 2 == 0) {
+                const LightSample s = light->sample(point, u);
+                towards = s.direction;
+                light_pdf = s.pdf;
+                phase_pdf = value(m.octaves[0].phase, static_cast<float>(dot(towards, forward)));
+            } else {
+                const PhaseSample s = sample(m.octaves[0].phase, Vec3f(forward), u);
+                towards = normalize(Vec3d(s.direction));
+                phase_pdf = s.pdf;
+                light_pdf = light->pdf(point, towards);
+            }
+            const Vec3f radiance = light->radiance(towards);
+            const Ray shadow{point, towards};
+            if (max_component(radiance) <= 0 || scene_.view.surfaces.is_blocked(shadow)) continue;
+            ++rays;
+            const Vec3f depth =
+                optical_depth(scene_.view.media, shadow, scene_.shadow_steps(), &lookups);
+            Vec3f scattered;
+            const auto cosine = static_cast<float>(dot(towards, forward));
+            for (const Octave& o : m.octaves) {
+                scattered +=
+                    o.contribution * value(o.phase, cosine) * fast_exp(-o.attenuation * depth);
+            }
+            sum += radiance * scattered * (1 / (static_cast<float>(n) * (light_pdf + phase_pdf)));
+        }
+    }
+    return sum;
+}
+
+Vec3f RayMarcher::through_media(const Ray& ray) {
+    ++rays;
+    return fast_exp(-optical_depth(scene_.view.media, ray, scene_.shadow_steps(), &lookups));
+}
+
+// Lambert reflection of all lights, each seen through the media.
+Vec3f RayMarcher::shade(const SurfaceHit& hit, const MarchSampler& sampler) {
+    Vec3f irradiance;
+    for (const NarrowLight& narrow : scene_.narrow) {
+        const LightSample s = narrow.light->sample(hit.point, sampler.two(DimensionSun));
+        const double cosine = dot(s.direction, hit.normal);
+        if (cosine <= 0 || max_component(s.weight) <= 0) continue;
+        Ray shadow = leaving_ray(hit, s.direction);
+        shadow.t_max = s.distance;
+        if (scene_.view.surfaces.is_blocked(shadow)) continue;
+        irradiance += static_cast<float>(cosine) * s.weight * through_media(shadow);
+    }
+    const int n = scene_.params.sky_samples;
+    Vec3d tangent, bitangent;
+    orthonormal_frame(hit.normal, tangent, bitangent);
+    for (const Light* light : scene_.broad) {
+        for (int i = 0; i < 2 * n; ++i) {
+            const Vec2f u = sampler.two(DimensionSky, i, 2 * n);
+            Vec3d towards;
+            if (i % 2 == 0) {
+                towards = light->sample(hit.point, u).direction;
+            } else {
+                // In proportion to the cosine.
+                const double r = std::sqrt(static_cast<double>(u.x)),
+                             turn = 2 * pi * static_cast<double>(u.y);
+                towards = r * std::cos(turn) * tangent + r * std::sin(turn) * bitangent +
+                          std::sqrt(1 - r * r) * hit.normal;
+            }
+            const double cosine = dot(towards, hit.normal);
+            const Vec3f radiance = light->radiance(towards);
+            if (cosine <= 0 || max_component(radiance) <= 0) continue;
+            const Ray shadow = leaving_ray(hit, towards);
+            if (scene_.view.surfaces.is_blocked(shadow)) continue;
+            const float pdf = light->pdf(hit.point, towards) + static_cast<float>(cosine / pi);
+            irradiance += radiance * through_media(shadow) *
+                          (static_cast<float>(cosine) / (static_cast<float>(n) * pdf));
+        }
+    }
+    return hit.emission + static_cast<float>(1 / pi) * hit.albedo * irradiance;
+}
+
+}  // namespace gischt

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/random.h"
+#include "math/sobol.h"
+#include "render/march/march_scene.h"
+
+namespace gischt {
+
+// The random numbers of one sample of one pixel: Owen-scrambled Sobol points, a fresh scrambling
+// per dimension.
+struct MarchSampler {
+    std::uint64_t key = 0;     // of seed, frame and pixel
+    std::uint32_t sample = 0;  // index in the pixel
+
+    Vec2f two(std::uint32_t dimension) const {
+        return sobol_2d(sample, random_bits(key, dimension));
+    }
+    // Point `i` of `count` that are stratified together with those of all other samples.
+    Vec2f two(std::uint32_t dimension, int i, int count) const {
+        const std::uint32_t index =
+            sample * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(i);
+        return sobol_2d(index, random_bits(key, dimension));
+    }
+};
+
+// What a camera ray sees.
+struct MarchedRay {
+    Vec3f radiance;                // W/(m^2 sr), without the background
+    Vec3f transmittance{1, 1, 1};  // of what lies behind; 0 where a surface was hit
+    float depth = 0;               // sum of opacity times distance
+    float opacity = 0;             // what that sum is divided by
+};
+
+// Marches rays through a scene; keeps scratch memory, so one per thread.
+class RayMarcher {
+  public:
+    explicit RayMarcher(const MarchScene& scene);
+
+    // Eq. 19 front to back up to the nearest surface, which is shaded, or to the end of the media.
+    MarchedRay operator()(const Ray& ray, const MarchSampler& sampler);
+
+    std::int64_t rays = 0, lookups = 0;
+
+  private:
+    static constexpr std::size_t batch = 16;
+
+    struct Walker {
+        SegmentWalk walk;
+        MediumSegment segment;
+        std::size_t medium = 0;
+        bool is_active = false;
+        std::array<float, batch> density{};
+        std::array<Vec3f, batch> emission{};
+
+        // After the last segment there is one at infinity.
+        void advance() {
+            constexpr double never = std::numeric_limits<double>::infinity();
+            if (!walk.next(segment)) segment.t0 = segment.t1 = never;
+        }
+    };
+
+    void weigh_phases(const Ray& ray);
+    void march_interval(const Ray& ray, double t0, double t1, const MarchSampler& sampler);
+    void march_batch(const Ray& ray, std::span<const double> t, float length,
+                     const MarchSampler& sampler);
+    Vec3f in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
+                       const MarchSampler& sampler);
+    Vec3f from_narrow(std::size_t medium, std::size_t light, const Ray& ray, const Vec3d& point,
+                      const MarchSampler& sampler);
+    Vec3f from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
+                     const MarchSampler& sampler);
+    Vec3f shade(const SurfaceHit& hit, const MarchSampler& sampler);
+    Vec3f through_media(const Ray& ray);
+
+    const MarchScene& scene_;
+    std::vector<Walker> walkers_;
+    std::vector<float> phase_weight_;  // contribution * phase by octave, medium and infinite light
+    std::vector<std::size_t> phase_offset_;  // of a medium in there, for light 0
+    std::size_t phase_stride_ = 0;           // from light to light
+    std::uint32_t step_ = 0;                 // steps done on this ray
+    MarchedRay result_;
+};
+
+}  // namespace gischt
