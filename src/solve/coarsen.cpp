@@ -8,21 +8,6 @@
 namespace gischt {
 namespace {
 
-// The tiles of half as many cells per axis, in the same shape whatever the extent.
-TileMap::Ptr coarse_map(const TileMap& fine) {
-    const Vec3i n = fine.bounds().size();
-    const Vec3i cells = (n + Vec3i(1)) / Vec3i(2);
-    const Vec3i count = fine.shape().tile_of(cells - Vec3i(1)) + Vec3i(1);
-    std::vector<Vec3i> tiles;
-    tiles.reserve(volume(count));
-    for (int k = 0; k < count.z; ++k) {
-        for (int j = 0; j < count.y; ++j) {
-            for (int i = 0; i < count.x; ++i) tiles.emplace_back(i, j, k);
-        }
-    }
-    return TileMap::sparse(std::move(tiles), {{}, cells}, fine.shape());
-}
-
 // The fine tiles below a coarse one, -1 where there is none; 4 in 2-D.
 std::array<int, 8> children_of(const StencilLevel& fine, const Vec3i& coarse_coord) {
     std::array<int, 8> child;
@@ -112,7 +97,8 @@ StencilLevel make_coarser(const StencilLevel& fine) {
     spec.sides = fine.sides;
     spec.shift = std::ldexp(fine.shift, -fine.depth * fine.axes());
     StencilLevel coarse =
-        make_open_level(coarse_map(*fine.map), spec, fine.finest_cells, fine.depth + 1);
+        make_open_level(full_map((fine.cells + Vec3i(1)) / Vec3i(2), fine.shape()), spec,
+                        fine.finest_cells, fine.depth + 1);
 
     // Above open tiles the coefficients are those of the open box; the others sum up their own.
     const int tiles = coarse.map->size();

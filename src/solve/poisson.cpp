@@ -7,6 +7,10 @@ namespace gischt {
 namespace {
 
 StencilSpec specify(TileMap::Ptr map, const Sides& sides, const FaceField* fraction) {
+    if (!map->is_box()) {
+        throw Error(ErrorKind::Usage, "solve", "the cells do not form a box",
+                    "solve on a map made by TileMap::box");
+    }
     StencilSpec spec;
     spec.fraction = fraction;
     for (std::size_t s = 0; s < sides.size(); ++s) {

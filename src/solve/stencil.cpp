@@ -99,10 +99,6 @@ void add_extra(const TileField<float>& extra, int tile, StencilBlock& block) {
 }
 
 void check(const StencilSpec& spec) {
-    if (!spec.map->is_box()) {
-        throw Error(ErrorKind::Usage, "solve", "the cells do not form a box",
-                    "solve on a map made by TileMap::box");
-    }
     for (std::size_t a = 0; a < (spec.map->is_2d() ? 2 : 3); ++a) {
         if ((spec.sides[2 * a].kind == SideRule::Kind::Periodic) !=
             (spec.sides[2 * a + 1].kind == SideRule::Kind::Periodic)) {

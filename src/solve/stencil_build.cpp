@@ -15,7 +15,8 @@ struct AxisTable {
 
     AxisTable(const StencilLevel& level, int axis, int tile_coordinate) {
         const int n = level.cells[axis], width = level.shape().extent()[axis];
-        const double edge = std::ldexp(1.0, level.depth);
+        // In 2-D nothing is coarsened along z.
+        const double edge = axis < level.axes() ? std::ldexp(1.0, level.depth) : 1.0;
         for (int i = 0; i < width; ++i) {
             const int cell = tile_coordinate * width + i;
             const auto at = static_cast<std::size_t>(i);
@@ -185,6 +186,18 @@ double side_ratio(const StencilLevel& level, int axis, int end) {
     const int cell = end == 0 ? 0 : level.cells[axis] - 1;
     const double inside = std::min(level.finest_cells[axis] - cell * edge, edge);
     return edge / (0.5 * inside - 0.5 + side.distance);
+}
+
+TileMap::Ptr full_map(const Vec3i& cells, const TileShape& shape) {
+    const Vec3i count = shape.tile_of(cells - Vec3i(1)) + Vec3i(1);
+    std::vector<Vec3i> tiles;
+    tiles.reserve(volume(count));
+    for (int k = 0; k < count.z; ++k) {
+        for (int j = 0; j < count.y; ++j) {
+            for (int i = 0; i < count.x; ++i) tiles.emplace_back(i, j, k);
+        }
+    }
+    return TileMap::sparse(std::move(tiles), {{}, cells}, shape);
 }
 
 StencilLevel make_open_level(TileMap::Ptr map, const StencilSpec& spec, const Vec3i& finest_cells,

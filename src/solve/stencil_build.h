@@ -17,6 +17,9 @@ constexpr Direction direction_of(const Vec3i& local, int axis, int end) {
 // Periodic, cell edge over distance for Fixed, since that place stays where it is at all levels.
 double side_ratio(const StencilLevel& level, int axis, int end);
 
+// All tiles of the box [0, cells), of this shape even where the box is one cell thick.
+TileMap::Ptr full_map(const Vec3i& cells, const TileShape& shape);
+
 // Sets a level's geometry, links tiles and ghosts, and gives all tiles the shared block that their
 // place in the box demands; own blocks are up to the caller.
 StencilLevel make_open_level(TileMap::Ptr map, const StencilSpec& spec, const Vec3i& finest_cells,
