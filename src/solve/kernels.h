@@ -46,6 +46,9 @@ struct Smooth {
 void smooth(const TileRange& range, const Smooth& what, const SplitField& r, SplitField& z,
             std::span<double> sum);
 
+// res = r - A z.
+void residual(const TileRange& range, const SplitField& r, const SplitField& z, SplitField& res);
+
 // After red and black were smoothed from zero the residual is zero on the black cells, and on the
 // red ones sum of w z over the black neighbours, which this stores to red z. 6 bytes.
 void red_residual(const TileRange& range, SplitField& z);

@@ -19,6 +19,10 @@ Multigrid::Multigrid(const StencilSpec& spec) {
         r_[l] = SplitField(levels_[l].tiles_with_ghosts);
         z_[l] = SplitField(levels_[l].tiles_with_ghosts);
     }
+    residual_.resize(levels_.size());
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        if (!levels_[l].copies.empty()) residual_[l] = SplitField(levels_[l].tiles_with_ghosts);
+    }
     sums_.resize(levels_[0].active.size());
 }
 
@@ -38,26 +42,28 @@ void Multigrid::cycle(std::size_t depth, const SplitField& r, SplitField& z) {
     }
     const StencilLevel& coarse = levels_[depth + 1];
     SplitField &coarse_r = r_[depth + 1], &coarse_z = z_[depth + 1];
+    const bool wraps = !level.copies.empty();
 
-    // Black after red, from zero; the residual that this leaves on the red cells.
+    // Black after red, from zero; the residual that this leaves, on the red cells only unless an
+    // odd period makes cells of one colour neighbours.
     fill_ghosts(level, z, true);
     for_active(level, [&](const TileRange& range) { smooth(range, {1, false}, r, z, {}); });
     fill_ghosts(level, z);
-    for_active(level, [&](const TileRange& range) { red_residual(range, z); });
-
-    // The coarser level's share.
-    const bool wraps = !level.copies.empty();
     if (wraps) {
-        restrict_slow(level, coarse, z, coarse_r);
+        for_active(level, [&](const TileRange& range) { residual(range, r, z, residual_[depth]); });
+        restrict_wrapped(level, coarse, residual_[depth], coarse_r);
     } else {
+        for_active(level, [&](const TileRange& range) { red_residual(range, z); });
         for_active(level,
                    [&](const TileRange& range) { restrict_red(range, coarse, z, coarse_r); });
     }
+
+    // The coarser level's share.
     for_active(coarse,
                [&](const TileRange& range) { smooth_red_first(range, coarse_r, coarse_z); });
     cycle(depth + 1, coarse_r, coarse_z);
     if (wraps) {
-        prolong_slow(level, coarse, coarse_z, r, z);
+        prolong_wrapped(level, coarse, coarse_z, z);
     } else {
         fill_ghosts(coarse, coarse_z);
         for_active(level,

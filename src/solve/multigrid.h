@@ -41,7 +41,8 @@ class Multigrid {
     void smooth_after(std::size_t depth, const SplitField& r, SplitField& z);
 
     std::vector<StencilLevel> levels_;
-    std::vector<SplitField> r_, z_;  // of levels 1 and up; entry 0 stays empty
+    std::vector<SplitField> r_, z_;     // of levels 1 and up; entry 0 stays empty
+    std::vector<SplitField> residual_;  // of levels with periodic copies
     DenseInverse bottom_;
     bool has_bottom_ = false;
     std::vector<double> sums_;

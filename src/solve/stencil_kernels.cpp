@@ -207,6 +207,38 @@ struct ResidualKernel {
     }
 };
 
+struct FullResidualArguments {
+    const StencilLevel& level;
+    const SplitField& r;
+    const SplitField& z;
+    SplitField& res;
+};
+
+template <bool is_2d, bool constant>
+struct FullResidualKernel {
+    template <int color>
+    static void half(const FullResidualArguments& a, int tile) {
+        const Floats d;
+        const Coefficients<is_2d, constant> c(a.level, tile);
+        const Around other = around(a.level, tile, a.z, 1 - color);
+        const int first = color * color_values;
+        const float* r = a.r.tile(tile) + first;
+        const float* z = a.z.tile(tile) + first;
+        float* res = a.res.tile(tile) + first;
+        for_vectors<is_2d>(
+            [&](int x, int row, int plane, int at) HWY_ATTR {
+                const Neighbours n = load_neighbours<is_2d, color>(other, x, row, plane);
+                const Vec q = c.apply(hn::Load(d, z + at), n, color, at);
+                hn::Store(hn::Sub(hn::Load(d, r + at), q), d, res + at);
+            },
+            []() {});
+    }
+    static void run(const FullResidualArguments& a, int tile, std::size_t) {
+        half<0>(a, tile);
+        half<1>(a, tile);
+    }
+};
+
 struct SplitArguments {
     const StencilLevel& level;
     const float* natural;
@@ -264,6 +296,10 @@ void SmoothColor(const TileRange& range, const Smooth& what, const SplitField& r
 void RedResidual(const TileRange& range, SplitField& z) {
     for_tiles<ResidualKernel>(range, SmoothArguments{range.level, {}, z, z, nullptr});
 }
+void FullResidual(const TileRange& range, const SplitField& r, const SplitField& z,
+                  SplitField& res) {
+    for_tiles<FullResidualKernel>(range, FullResidualArguments{range.level, r, z, res});
+}
 void Split(const TileRange& range, const float* natural, SplitField& field) {
     for_tiles<SplitKernel>(range, SplitArguments{range.level, natural, field});
 }
@@ -282,6 +318,7 @@ HWY_EXPORT(Direct);
 HWY_EXPORT(SmoothRedFirst);
 HWY_EXPORT(SmoothColor);
 HWY_EXPORT(RedResidual);
+HWY_EXPORT(FullResidual);
 HWY_EXPORT(Split);
 
 void multiply_sum(const TileRange& range, const SplitField& p, std::span<double> sum) {
@@ -309,6 +346,9 @@ void smooth(const TileRange& range, const Smooth& what, const SplitField& r, Spl
 }
 void red_residual(const TileRange& range, SplitField& z) {
     HWY_DYNAMIC_DISPATCH(RedResidual)(range, z);
+}
+void residual(const TileRange& range, const SplitField& r, const SplitField& z, SplitField& res) {
+    HWY_DYNAMIC_DISPATCH(FullResidual)(range, r, z, res);
 }
 void split(const TileRange& range, const float* natural, SplitField& field) {
     HWY_DYNAMIC_DISPATCH(Split)(range, natural, field);

@@ -2,121 +2,158 @@
 #include "solve/transfer.h"
 
 #include "base/parallel.h"
+#include "solve/stencil_build.h"
 
 namespace gischt {
 namespace {
 
-// Values of a level by global cell, wrapped where the axis is periodic.
-class CellView {
+// A dense copy of the values around one coarse tile, with one coarse cell more on each side, in
+// natural order. Periodic axes wrap; zero beyond other sides and where a coarse cell lacks a child.
+class Patch {
   public:
-    CellView(const StencilLevel& level, const SplitField& field) : level_(level), field_(field) {}
+    // The coarse field itself.
+    static Patch of_cells(const StencilLevel& level, const SplitField& field, int tile) {
+        return Patch(level, field, tile, level, 1);
+    }
+    // The children of the coarse cells, two per axis.
+    static Patch of_children(const StencilLevel& fine, const SplitField& field,
+                             const StencilLevel& coarse, int coarse_tile) {
+        return Patch(fine, field, coarse_tile, coarse, 2);
+    }
 
-    // 0 beyond other sides.
-    float operator()(Vec3i c) const {
-        if (!wrap(c)) return 0;
-        const int tile = level_.map->find(level_.shape().tile_of(c));
-        const Vec3i local = c - level_.map->first_cell(tile);
-        return field_.tile(tile)[split_index(level_.shape(), local)];
+    // Cell (or child) relative to the tile's first.
+    float operator()(const Vec3i& c) const {
+        const Vec3i i = c + halo_;
+        return values_[static_cast<std::size_t>(i.x + size_.x * (i.y + size_.y * i.z))];
     }
 
   private:
-    bool wrap(Vec3i& c) const {
+    Patch(const StencilLevel& level, const SplitField& field, int tile, const StencilLevel& coarse,
+          int per_cell) {
+        halo_ = size_ = Vec3i(1);
+        std::array<std::vector<int>, 3> source;
+        const Vec3i first = coarse.map->first_cell(tile), extent = coarse.shape().extent();
         for (int a = 0; a < 3; ++a) {
-            const int n = level_.cells[a];
-            if (c[a] >= 0 && c[a] < n) continue;
-            const auto kind = level_.sides[static_cast<std::size_t>(2 * a)].kind;
-            if (kind != SideRule::Kind::Periodic) return false;
-            c[a] = (c[a] + n) % n;
+            const bool flat = a >= coarse.axes();
+            halo_[a] = flat ? 0 : per_cell;
+            size_[a] = flat ? 1 : per_cell * (extent[a] + 2);
+            for (int i = 0; i < size_[a]; ++i) {
+                source[static_cast<std::size_t>(a)].push_back(
+                    flat ? 0
+                         : source_of(level, coarse, a, first[a] - 1 + i / per_cell, per_cell,
+                                     i % per_cell));
+            }
         }
-        return true;
+        values_.reserve(volume(size_));
+        for (const int z : source[2]) {
+            for (const int y : source[1]) {
+                for (const int x : source[0]) values_.push_back(value(level, field, {x, y, z}));
+            }
+        }
     }
 
-    const StencilLevel& level_;
-    const SplitField& field_;
+    // Index on level's axis that coarse cell c, or its child on the given side, takes; -1: none.
+    static int source_of(const StencilLevel& level, const StencilLevel& coarse, int axis, int c,
+                         int per_cell, int side) {
+        const int n = coarse.cells[axis];
+        if (c < 0 || c >= n) {
+            const auto kind = coarse.sides[static_cast<std::size_t>(2 * axis)].kind;
+            if (kind != SideRule::Kind::Periodic) return -1;
+            c = (c + n) % n;
+        }
+        const int i = per_cell * c + side;
+        return i < level.cells[axis] ? i : -1;
+    }
+    static float value(const StencilLevel& level, const SplitField& field, const Vec3i& c) {
+        if (min_component(c) < 0) return 0;
+        const int tile = level.map->find(level.shape().tile_of(c));
+        return field.tile(tile)[split_index(level.shape(), c - level.map->first_cell(tile))];
+    }
+
+    Vec3i halo_, size_;
+    std::vector<float> values_;
 };
 
-// Calls f(cell, local) for the cells of a tile inside the box.
+// Calls f(local) for the cells of a tile inside the box.
 template <class F>
 void for_cells(const StencilLevel& level, int tile, F&& f) {
-    const Vec3i first = level.map->first_cell(tile), size = level.map->cells_of(tile).size();
+    const Vec3i size = level.map->cells_of(tile).size();
     for (int k = 0; k < size.z; ++k) {
         for (int j = 0; j < size.y; ++j) {
-            for (int i = 0; i < size.x; ++i) f(first + Vec3i(i, j, k), Vec3i(i, j, k));
+            for (int i = 0; i < size.x; ++i) f(Vec3i(i, j, k));
         }
     }
 }
 
-Vec3i unit(int axis, int end) {
-    Vec3i v;
-    v[axis] = end == 0 ? -1 : 1;
-    return v;
+Vec3i first_child(const StencilLevel& level, const Vec3i& c) {
+    return {2 * c.x, 2 * c.y, level.is_2d() ? 0 : 2 * c.z};
 }
 
-bool is_red(const Vec3i& c) {
-    return ((c.x + c.y + c.z) & 1) == 0;
+// Calls f(side) for each child of a coarse cell.
+template <class F>
+void for_children(const StencilLevel& level, F&& f) {
+    for (int n = 0; n < (level.is_2d() ? 4 : 8); ++n) f(Vec3i(n & 1, n >> 1 & 1, n >> 2 & 1));
 }
 
-// Sum of res over the red children of coarse cell c, all or (axis >= 0) those on one side of it.
-float sum_red(const StencilLevel& fine, const CellView& res, const Vec3i& c, int axis, int end) {
+// Sum over the children of c on one side.
+float half_sum(const StencilLevel& level, const Patch& children, const Vec3i& c, int axis,
+               int end) {
     float sum = 0;
-    for (int n = 0; n < (fine.is_2d() ? 4 : 8); ++n) {
-        const Vec3i side{n & 1, n >> 1 & 1, n >> 2 & 1};
-        if (axis >= 0 && side[axis] != end) continue;
-        Vec3i child = c * 2 + side;
-        if (fine.is_2d()) child.z = 0;
-        const bool inside = min_component(fine.cells - child) > 0;
-        if (inside && is_red(child)) sum += res(child);
-    }
+    for_children(level, [&](const Vec3i& side) {
+        if (side[axis] == end) sum += children(first_child(level, c) + side);
+    });
     return sum;
+}
+
+Vec3i towards(Vec3i c, int axis, int end) {
+    c[axis] += end == 0 ? -1 : 1;
+    return c;
 }
 
 }  // namespace
 
-void restrict_slow(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& res,
-                   SplitField& coarse_r) {
-    const CellView view(fine, res);
+void restrict_wrapped(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& res,
+                      SplitField& coarse_r) {
     parallel_for(static_cast<int>(coarse.active.size()), 1, [&](int n) {
         const int t = coarse.active[static_cast<std::size_t>(n)];
-        for_cells(coarse, t, [&](const Vec3i& c, const Vec3i& local) {
-            float r = sum_red(fine, view, c, -1, 0);
+        const Patch children = Patch::of_children(fine, res, coarse, t);
+        for_cells(coarse, t, [&](const Vec3i& c) {
+            float r = half_sum(coarse, children, c, 0, 0) + half_sum(coarse, children, c, 0, 1);
             for (int a = 0; a < coarse.axes(); ++a) {
                 for (int end = 0; end < 2; ++end) {
-                    const float w = face_weight(coarse, t, local, a, end);
+                    const float w = 0.25f * face_weight(coarse, t, c, a, end) / coarse.weight;
                     if (w == 0) continue;
-                    Vec3i next = c + unit(a, end);
-                    const bool beyond = next[a] < 0 || next[a] >= coarse.cells[a];
-                    const bool wraps = coarse.sides[static_cast<std::size_t>(2 * a)].kind ==
-                                       SideRule::Kind::Periodic;
-                    next[a] = (next[a] + coarse.cells[a]) % coarse.cells[a];
-                    const float there =
-                        beyond && !wraps ? 0.0f : sum_red(fine, view, next, a, 1 - end);
-                    r += 0.25f * w / coarse.weight * (there - sum_red(fine, view, c, a, end));
+                    r += w * (half_sum(coarse, children, towards(c, a, end), a, 1 - end) -
+                              half_sum(coarse, children, c, a, end));
                 }
             }
-            coarse_r.tile(t)[split_index(coarse.shape(), local)] = r;
+            coarse_r.tile(t)[split_index(coarse.shape(), c)] = r;
         });
     });
 }
 
-void prolong_slow(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& e,
-                  const SplitField& r, SplitField& z) {
-    const CellView view(coarse, e);
-    parallel_for(static_cast<int>(fine.active.size()), 1, [&](int n) {
-        const int t = fine.active[static_cast<std::size_t>(n)];
-        for_cells(fine, t, [&](const Vec3i& cell, const Vec3i& fine_local) {
-            if (!is_red(cell)) return;
-            const Vec3i c{cell.x >> 1, cell.y >> 1, cell.z >> 1};
-            const int parent = coarse.map->find(coarse.shape().tile_of(c));
-            const Vec3i local = c - coarse.map->first_cell(parent);
-            const float own = view(c);
-            float value = own;
+void prolong_wrapped(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& e,
+                     SplitField& z) {
+    parallel_for(static_cast<int>(coarse.active.size()), 1, [&](int n) {
+        const int t = coarse.active[static_cast<std::size_t>(n)];
+        const Patch cells = Patch::of_cells(coarse, e, t);
+        for_cells(coarse, t, [&](const Vec3i& c) {
+            float slope[3][2] = {};
             for (int a = 0; a < coarse.axes(); ++a) {
-                const int end = cell[a] & 1;
-                const float w = face_weight(coarse, parent, local, a, end);
-                if (w != 0) value += 0.25f * w / coarse.weight * (view(c + unit(a, end)) - own);
+                for (int end = 0; end < 2; ++end) {
+                    const float w = 0.25f * face_weight(coarse, t, c, a, end) / coarse.weight;
+                    if (w != 0) slope[a][end] = w * (cells(towards(c, a, end)) - cells(c));
+                }
             }
-            const int at = split_index(fine.shape(), fine_local);
-            z.tile(t)[at] = fine.block_of(t).inverse_diagonal[0][at] * r.tile(t)[at] + value;
+            const Vec3i corner = first_child(coarse, coarse.map->first_cell(t) + c);
+            for_children(coarse, [&](const Vec3i& side) {
+                const Vec3i child = corner + side;
+                if (min_component(fine.cells - child) <= 0) return;
+                const int tile = fine.map->find(fine.shape().tile_of(child));
+                const Vec3i local = child - fine.map->first_cell(tile);
+                z.tile(tile)[split_index(fine.shape(), local)] +=
+                    cells(c) + slope[0][side.x] + slope[1][side.y] + slope[2][side.z];
+            });
         });
     });
 }

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "solve/kernels.h"
+#include "solve/stencil.h"
 
 namespace gischt {
 
-// restrict_red and prolong_red without SIMD, cell by cell from the definition. For levels with
-// periodic copies (StencilLevel::copies), whose last coarse cells wrap around inside a tile, and as
-// the reference for the fast ones.
-void restrict_slow(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& res,
-                   SplitField& coarse_r);
-void prolong_slow(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& e,
-                  const SplitField& r, SplitField& z);
+// R and P of kernels.h for all cells, from the definition and without SIMD: for levels with
+// periodic copies (StencilLevel::copies), where a coarse cell may lack children and neighbours wrap
+// around inside a tile, and as the reference for the fast ones. Ghosts are not read.
+
+// coarse r = R res.
+void restrict_wrapped(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& res,
+                      SplitField& coarse_r);
+// z += P e.
+void prolong_wrapped(const StencilLevel& fine, const StencilLevel& coarse, const SplitField& e,
+                     SplitField& z);
 
 }  // namespace gischt
