@@ -56,10 +56,10 @@ struct Problem {
 };
 
 const Problem problems[] = {
-    {Vec3i(32, 48, 40), closed_box, true},   {Vec3i(32, 32, 32), all_periodic, true},
-    {Vec3i(29, 33, 40), open_top, true},     {Vec3i(27, 25, 22), all_periodic, true},
-    {Vec3i(24, 24, 2), all_open, false},     {Vec3i(128, 64, 1), open_top, true},
-    {Vec3i(131, 67, 1), all_periodic, true},
+    {Vec3i(32, 48, 40), closed_box, true}, {Vec3i(32, 32, 32), all_periodic, true},
+    {Vec3i(29, 33, 40), open_top, true},   {Vec3i(27, 25, 22), all_periodic, true},
+    {Vec3i(24, 24, 2), all_open, false},   {Vec3i(45, 31, 33), all_open, true},
+    {Vec3i(128, 64, 1), open_top, true},   {Vec3i(131, 67, 1), all_periodic, true},
 };
 
 class OnProblem : public testing::TestWithParam<Problem> {
@@ -129,7 +129,7 @@ TEST_P(OnProblem, OperatorAndPreconditionerAreSymmetricAndPositive) {
     multigrid.precondition(y, my);
     EXPECT_NEAR(xmx, inner(level, x, mx), 1e-6 * xx);
     const double size = std::sqrt(inner(level, y, y) * inner(level, mx, mx));
-    EXPECT_NEAR(inner(level, y, mx), inner(level, x, my), 1e-6 * size);
+    EXPECT_NEAR(inner(level, y, mx), inner(level, x, my), 1e-7 * size);
     EXPECT_GT(xmx, 0);
 }
 

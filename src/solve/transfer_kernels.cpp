@@ -275,10 +275,13 @@ struct ProlongKernel {
                         HWY_ALIGN float correction[8];
                         hn::StoreInterleaved2(even, odd, d, correction);
                         for (int i = 0; i < 2 * lanes; i += lanes) {
-                            const Vec4 first =
-                                hn::Mul(hn::Load(d, fine_block.inverse_diagonal[0] + to + i),
-                                        hn::Load(d, r + to + i));
-                            hn::Store(hn::Add(first, hn::Load(d, correction + i)), d, z + to + i);
+                            // Nothing beyond an open side, which black cells are about to read.
+                            const Vec4 inverse =
+                                hn::Load(d, fine_block.inverse_diagonal[0] + to + i);
+                            const Vec4 value = hn::MulAdd(inverse, hn::Load(d, r + to + i),
+                                                          hn::Load(d, correction + i));
+                            hn::Store(hn::IfThenElseZero(hn::Gt(inverse, hn::Zero(d)), value), d,
+                                      z + to + i);
                         }
                     }
                 }
