@@ -11,14 +11,14 @@ namespace gischt {
 
 // Colour map of one quantity of the first frame of the view that has it: a 2-D field as it is, of a
 // 3-D one a slice. The slice fills the picture at its own aspect, the cells being square as they
-// are in space, with x (or y) to the right and the up-most axis up; the camera counts only where an
-// automatic axis is in doubt. Values outside of the cells are the field's background.
+// are in space, with x (or y) to the right; the camera only decides an axis that is in doubt.
+// Values outside of the cells are the field's background.
 //
 // The picture is display-referred: R, G, B are display-linear colours of the map, A is 1, and the
 // metadata "tone" = "linear" and "display_referred" = "true" tell those who write it as PNG to
 // apply no exposure, no tone curve but linear, and no dither, so that the colours are those of the
-// map. "quantity", "unit", "range_low", "range_high" and "slice" name what is shown. Channel Z is
-// the distance 0.
+// map. "quantity", "unit", "range_low", "range_high" and "slice" name what is shown. There is
+// no channel Z.
 std::unique_ptr<RenderMethod> make_field_method(const FieldParams& params);
 
 inline constexpr std::string_view field_simulates =

@@ -10,14 +10,14 @@ const Table<FieldParams>& field_params_table() {
             .add("quantity", &P::quantity,
                  {.help = "A field of the frame (density, temperature, pressure, ...), or speed, "
                           "velocity_x, velocity_y, velocity_z or vorticity"})
-            .choice("axis", &P::axis,
-                    {{"auto", SliceAxis::Automatic,
-                      "the axis along which the field is thinnest or, where it is equally thick, "
-                      "that the camera looks along"},
-                     {"x", SliceAxis::X},
-                     {"y", SliceAxis::Y},
-                     {"z", SliceAxis::Z}},
-                    {.help = "What the slice is perpendicular to"})
+            .choice(
+                "axis", &P::axis,
+                {{"auto", SliceAxis::Automatic,
+                  "the thin axis of a 2-D field, else the one that the camera looks along most"},
+                 {"x", SliceAxis::X},
+                 {"y", SliceAxis::Y},
+                 {"z", SliceAxis::Z}},
+                {.help = "What the slice is perpendicular to"})
             .add("position", &P::position,
                  {.unit = "m", .help = "Where the slice cuts the axis; the middle by default"})
             .choice("colormap", &P::colormap,
