@@ -16,16 +16,19 @@ class Sweep {
   public:
     Sweep(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
           Interpolation interpolation)
-        : domain_(domain), blocks_(blocks), speeds_(speeds), interpolation_(interpolation),
+        : domain_(domain),
+          blocks_(blocks),
+          speeds_(speeds),
+          interpolation_(interpolation),
           dt_over_h_(dt / domain.h) {
         Vec3f peak;
         for (const Vec3f& s : speeds) peak = max(peak, s);
         // Blocks that a trace from any cell of a block may reach, the interpolation's neighbours
         // included. Behind a periodic side the next block may be a narrow rest.
         for (int a = 0; a < domain.axes(); ++a) {
-            reach_[a] = static_cast<int>(
-                            std::ceil((peak[a] * dt_over_h_ + 3) / blocks.extent()[a])) +
-                        (domain.is_periodic(a) ? 1 : 0);
+            reach_[a] =
+                static_cast<int>(std::ceil((peak[a] * dt_over_h_ + 3) / blocks.extent()[a])) +
+                (domain.is_periodic(a) ? 1 : 0);
         }
     }
 
@@ -235,6 +238,24 @@ void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& spe
     if (needs_correction) run_sweep(sweep, velocity, scalars, true);
     std::swap(*velocity.now, *velocity.next);
     for (const AdvectedScalar& s : scalars) std::swap(*s.now, *s.next);
+}
+
+BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks,
+                           const FaceField& velocity) {
+    BlockSpeeds speeds(static_cast<std::size_t>(blocks.size()));
+    for_blocks(blocks, [&](int block, Scratch& scratch) {
+        for (int a = 0; a < domain.axes(); ++a) {
+            Box3i faces = blocks.cells(block);
+            if (faces.hi[a] == domain.cells[a]) faces.hi[a] += 1;
+            const Lattice lattice{faces};
+            float* u = scratch.array(slot_velocity, lattice.count());
+            gather_block_faces(velocity, a, lattice, Borders{}, u);
+            float peak = 0;
+            for (std::size_t i = 0; i < lattice.count(); ++i) peak = std::max(peak, std::abs(u[i]));
+            speeds[static_cast<std::size_t>(block)][a] = peak;
+        }
+    });
+    return speeds;
 }
 
 }  // namespace gischt

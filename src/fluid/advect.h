@@ -35,6 +35,7 @@ struct AdvectedVelocity {
 
 // Largest |component| of the velocity on the faces of each block, m/s.
 using BlockSpeeds = std::vector<Vec3f>;
+BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks, const FaceField& velocity);
 
 // Transports scalars and the velocity itself over dt seconds through the velocity `now`, whose
 // speeds bound how far a block has to look. Results and inputs change places: `now` is the new

@@ -26,8 +26,8 @@ struct Stencil {
     Floats fx, fy, fz;
 };
 
-// Indices up to 2^24 are exact in float, so that the address is found by two multiply-adds. `margin`
-// is 0 for linear and 1 for cubic interpolation.
+// Indices up to 2^24 are exact in float, so that the address is found by two multiply-adds.
+// `margin` is 0 for linear and 1 for cubic interpolation.
 template <int Dim>
 HWY_INLINE Stencil locate(const AdvectGeometry& g, const Positions& p, int axis, int margin) {
     const Tag d;
@@ -101,7 +101,8 @@ HWY_INLINE Floats monotone(Floats f0, Floats f1, Floats f2, Floats f3, Floats t)
         const auto size = hn::CopySign(hn::Min(hn::Abs(slope), bound), delta);
         return hn::IfThenElse(hn::Gt(hn::Mul(slope, delta), zero), size, zero);
     };
-    const auto d1 = limit(hn::Mul(half, hn::Sub(f2, f0))), d2 = limit(hn::Mul(half, hn::Sub(f3, f1)));
+    const auto d1 = limit(hn::Mul(half, hn::Sub(f2, f0))),
+               d2 = limit(hn::Mul(half, hn::Sub(f3, f1)));
     const auto two = hn::Set(d, 2.0f);
     const auto a3 = hn::Sub(hn::Add(d1, d2), hn::Mul(two, delta));
     const auto a2 = hn::Sub(hn::Sub(hn::Mul(hn::Set(d, 3.0f), delta), hn::Mul(two, d1)), d2);
@@ -116,9 +117,9 @@ HWY_INLINE Floats cubic(const AdvectGeometry& g, const float* p, const Stencil& 
         Floats rows[4];
         for (int j = 0; j < 4; ++j) {
             const float* row = q + sy * (j - 1);
-            rows[j] = monotone(
-                hn::GatherIndex(d, row - 1, s.base), hn::GatherIndex(d, row, s.base),
-                hn::GatherIndex(d, row + 1, s.base), hn::GatherIndex(d, row + 2, s.base), s.fx);
+            rows[j] = monotone(hn::GatherIndex(d, row - 1, s.base), hn::GatherIndex(d, row, s.base),
+                               hn::GatherIndex(d, row + 1, s.base),
+                               hn::GatherIndex(d, row + 2, s.base), s.fx);
         }
         return monotone(rows[0], rows[1], rows[2], rows[3], s.fy);
     };
@@ -135,7 +136,8 @@ HWY_INLINE Floats cubic(const AdvectGeometry& g, const float* p, const Stencil& 
 template <int Dim>
 HWY_INLINE Positions velocity_at_points(const AdvectGeometry& g, std::ptrdiff_t at) {
     const Tag d;
-    const std::ptrdiff_t stride[3] = {1, g.size.x, static_cast<std::ptrdiff_t>(g.size.x) * g.size.y};
+    const std::ptrdiff_t stride[3] = {1, g.size.x,
+                                      static_cast<std::ptrdiff_t>(g.size.x) * g.size.y};
     Floats v[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     for (int a = 0; a < Dim; ++a) {
         const float* u = g.velocity[static_cast<std::size_t>(a)] + at;
@@ -185,7 +187,8 @@ template <int Dim>
 HWY_INLINE Floats corrected(const AdvectGeometry& g, const AdvectedBlock& q, std::ptrdiff_t at,
                             const Stencil& origin, const Stencil& target) {
     const Tag d;
-    const auto error = hn::Sub(hn::LoadU(d, q.before + at), interpolate<Dim>(g, q.predicted, target));
+    const auto error =
+        hn::Sub(hn::LoadU(d, q.before + at), interpolate<Dim>(g, q.predicted, target));
     const auto value = hn::MulAdd(hn::Set(d, 0.5f), error, hn::LoadU(d, q.predicted + at));
     const Corners<Dim> c = load_corners<Dim>(g, q.before, origin);
     auto low = c.v[0], high = c.v[0];
@@ -220,17 +223,18 @@ void advect(const AdvectGeometry& g, std::span<const AdvectedBlock> quantities) 
                                       hn::Set(d, static_cast<float>(c.y) + shift(1)),
                                       hn::Set(d, static_cast<float>(c.z) + shift(2))};
                 const Positions v = velocity_at_points<Dim>(g, at);
-                const Stencil origin = locate<Dim>(g, trace<Dim>(g, start, v, -g.dt_over_h),
-                                                   g.face_axis, margin);
+                const Stencil origin =
+                    locate<Dim>(g, trace<Dim>(g, start, v, -g.dt_over_h), g.face_axis, margin);
                 Stencil target = origin;
                 if (corrects) {
-                    target = locate<Dim>(g, trace<Dim>(g, start, v, g.dt_over_h), g.face_axis,
-                                         margin);
+                    target =
+                        locate<Dim>(g, trace<Dim>(g, start, v, g.dt_over_h), g.face_axis, margin);
                 }
                 const std::ptrdiff_t to = i + g.out_stride_y * j + g.out_stride_z * k;
                 for (const AdvectedBlock& q : quantities) {
-                    store(q, to, q.predicted ? corrected<Dim>(g, q, at, origin, target)
-                                             : interpolate<Dim>(g, q.before, origin));
+                    store(q, to,
+                          q.predicted ? corrected<Dim>(g, q, at, origin, target)
+                                      : interpolate<Dim>(g, q.before, origin));
                 }
             }
         }

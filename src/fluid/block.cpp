@@ -142,7 +142,8 @@ void fill_borders(const std::array<std::vector<Image>, 3>& images, const Box3i& 
             for (int k = to.lo.z; k < to.hi.z; ++k) {
                 for (int j = to.lo.y; j < to.hi.y; ++j) {
                     float* row = out + lattice.index({to.lo.x, j, k});
-                    for (int i = 0; i < to.hi.x - to.lo.x; ++i) row[i] = image.sign * row[i + offset];
+                    for (int i = 0; i < to.hi.x - to.lo.x; ++i)
+                        row[i] = image.sign * row[i + offset];
                 }
             }
         }

@@ -34,7 +34,8 @@ class BlockMap {
     const Vec3i& counts() const { return counts_; }
     // Index of the block at these block coordinates, which must exist.
     int find(const Vec3i& coord) const {
-        return table_[static_cast<std::size_t>(coord.x + counts_.x * (coord.y + counts_.y * coord.z))];
+        return table_[static_cast<std::size_t>(coord.x +
+                                               counts_.x * (coord.y + counts_.y * coord.z))];
     }
     // The tiles of a block are neighbours in Morton order: [first_tile, end_tile).
     int first_tile(int b) const { return blocks_[static_cast<std::size_t>(b)].first_tile; }

@@ -34,8 +34,7 @@ static Error bad_domain(std::string what, std::string hint = {}) {
     return {ErrorKind::Usage, "domain", std::move(what), std::move(hint)};
 }
 
-Domain::Domain(const DomainParams& p)
-    : side{p.x_min, p.x_max, p.y_min, p.y_max, p.z_min, p.z_max} {
+Domain::Domain(const DomainParams& p) : side{p.x_min, p.x_max, p.y_min, p.y_max, p.z_min, p.z_max} {
     const Vec3d edge = p.max - p.min;
     const double longest = max_component(edge);
     if (!(edge.x > 0 && edge.y > 0 && edge.z >= 0) || !std::isfinite(longest)) {

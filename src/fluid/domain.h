@@ -14,7 +14,7 @@ enum class SideKind { Open, FreeSlip, NoSlip, Periodic };
 
 // The box in which a fluid is simulated, in metres.
 struct DomainParams {
-    int resolution = 64;             // cells along the longest edge
+    int resolution = 64;               // cells along the longest edge
     Vec3d min{0, 0, 0}, max{1, 1, 1};  // no extent along z: 2-D, one cell thick
     SideKind x_min = SideKind::Open, x_max = SideKind::Open, y_min = SideKind::Open,
              y_max = SideKind::Open, z_min = SideKind::Open, z_max = SideKind::Open;

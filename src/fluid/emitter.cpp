@@ -37,7 +37,8 @@ const Table<EmitterParams>& emitter_table() {
             .add("edge", &P::edge,
                  {.unit = "m", .help = "Width of the soft edge, at least one cell", .min = 0})
             .add("density", &P::density, {.help = "Smoke that it gives", .min = 0})
-            .add("temperature", &P::temperature, {.unit = "K", .help = "Of what it gives", .min = 0})
+            .add("temperature", &P::temperature,
+                 {.unit = "K", .help = "Of what it gives", .min = 0})
             .add("velocity", &P::velocity, {.unit = "m/s", .help = "Of what it gives"})
             .choice("mode", &P::mode,
                     {{"pull", EmitterMode::Pull, "values approach the source's at a rate"},
@@ -94,8 +95,13 @@ struct Emitters::Active {
     double time, dt, rate, frame_time, edge;
 
     Active(const EmitterParams& p, double t, double step, double frame, double cell)
-        : params(p), shape(shape_of(p, t)), time(t), dt(step), rate(p.rate.at(t)),
-          frame_time(frame), edge(std::max(p.edge, cell)) {}
+        : params(p),
+          shape(shape_of(p, t)),
+          time(t),
+          dt(step),
+          rate(p.rate.at(t)),
+          frame_time(frame),
+          edge(std::max(p.edge, cell)) {}
 
     // Cells that it reaches.
     Box3i reach(const Domain& domain) const {
@@ -139,10 +145,12 @@ Emitters::Emitters(std::vector<EmitterParams> emitters, double ambient_temperatu
             if (e.kind == EmitterKind::Sphere && !(r > 0)) bad("a radius is not positive");
         }
         for (const Vec3d& s : e.size.v) {
-            if (e.kind == EmitterKind::Box && !(min_component(s) > 0)) bad("an edge is not positive");
+            if (e.kind == EmitterKind::Box && !(min_component(s) > 0))
+                bad("an edge is not positive");
         }
         if (!(e.edge >= 0)) bad("the width of an edge is negative");
-        if (e.noise.amplitude != 0 && !(e.noise.scale > 0)) bad("the scale of noise is not positive");
+        if (e.noise.amplitude != 0 && !(e.noise.scale > 0))
+            bad("the scale of noise is not positive");
     }
 }
 

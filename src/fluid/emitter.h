@@ -25,10 +25,10 @@ const Table<EmitterNoise>& emitter_noise_table();
 // A place where a scene's values are imposed on the fluid. What is unset is left alone.
 struct EmitterParams {
     EmitterKind kind = EmitterKind::Sphere;
-    Keyed<Vec3d> position;         // m, centre
-    Keyed<double> radius = 0.25;   // m, sphere
-    Keyed<Vec3d> size = Vec3d(0.5);  // m, edges of a box
-    double edge = 0;               // m, width of the soft edge; at least one cell
+    Keyed<Vec3d> position;                     // m, centre
+    Keyed<double> radius = 0.25;               // m, sphere
+    Keyed<Vec3d> size = Vec3d(0.5);            // m, edges of a box
+    double edge = 0;                           // m, width of the soft edge; at least one cell
     std::optional<Keyed<double>> density;      // 1
     std::optional<Keyed<double>> temperature;  // K
     std::optional<Keyed<Vec3d>> velocity;      // m/s

@@ -77,8 +77,7 @@ class BlockForces {
              const FaceField& in, FaceField& out, Scratch& scratch) const {
         const Box3i cells = blocks_.cells(block);
         const bool confines = forces_.confinement != 0;
-        const Lattice lattice =
-            Lattice::around(cells, Vec3i(confines ? 3 : 1), true, is_2d_);
+        const Lattice lattice = Lattice::around(cells, Vec3i(confines ? 3 : 1), true, is_2d_);
         std::array<const float*, 3> u{};
         for (int a = 0; a < domain_.axes(); ++a) {
             float* faces = scratch.array(slot_velocity + a, lattice.count());
@@ -111,9 +110,8 @@ class BlockForces {
         float* size = scratch.array(slot_size, lattice.count());
         const Box3i wide = grown(cells, 2, is_2d_);
         compute_vorticity(lattice, wide, is_2d_, domain_.h, u, w);
-        for_rows(lattice, wide, [&](std::ptrdiff_t at, int n) {
-            size_row(w, at, n, is_2d_, size + at);
-        });
+        for_rows(lattice, wide,
+                 [&](std::ptrdiff_t at, int n) { size_row(w, at, n, is_2d_, size + at); });
         for_rows(lattice, grown(cells, 1, is_2d_), [&](std::ptrdiff_t at, int n) {
             confine_row(size + at, strides(lattice, is_2d_), n, is_2d_, w[0] + at, w[1] + at,
                         w[2] + at);
@@ -187,8 +185,7 @@ void compute_vorticity(const Lattice& lattice, const Box3i& cells, bool is_2d, d
     for_rows(lattice, cells, [&](std::ptrdiff_t at, int n) {
         for (std::size_t a = is_2d ? 2 : 0; a < 3; ++a) {
             const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-            curl_row(velocity[b] + at, velocity[c] + at, s[b], s[c], scale, n,
-                     vorticity[a] + at);
+            curl_row(velocity[b] + at, velocity[c] + at, s[b], s[c], scale, n, vorticity[a] + at);
         }
     });
 }

@@ -7,12 +7,12 @@ namespace gischt {
 
 // What acts on the fluid at one moment, per unit mass.
 struct Forces {
-    Vec3d gravity;               // m/s^2
-    double density_weight = 0;   // kappa: relative weight of density 1 (1)
+    Vec3d gravity;                 // m/s^2
+    double density_weight = 0;     // kappa: relative weight of density 1 (1)
     double thermal_expansion = 0;  // beta, 1/K
-    double confinement = 0;      // epsilon, 1/s
-    Vec3d wind;                  // m/s
-    double wind_rate = 0;        // 1/s
+    double confinement = 0;        // epsilon, 1/s
+    Vec3d wind;                    // m/s
+    double wind_rate = 0;          // 1/s
 };
 
 // One explicit step of the forces from `in` to `out`: buoyancy g (kappa density - beta (T - T_a)),

@@ -180,20 +180,9 @@ ProjectionResult PressureProjection::project(FaceField& velocity, TileField<floa
     result.max_divergence_dt = largest(rhs_) * dt / domain_.h;
     if (!solids_.is_empty()) {
         solids_.extrapolate(velocity);
-        measure_speeds(velocity, speeds);
+        speeds = measure_speeds(domain_, blocks_, velocity);
     }
     return result;
-}
-
-void PressureProjection::measure_speeds(const FaceField& velocity, BlockSpeeds& speeds) const {
-    for_blocks(blocks_, [&](int block, Scratch& scratch) {
-        for (int a = 0; a < domain_.axes(); ++a) {
-            const Lattice own{faces_of(domain_, blocks_.cells(block), a)};
-            float* u = scratch.array(slot_velocity, own.count());
-            gather_block_faces(velocity, a, own, Borders{}, u);
-            speeds[static_cast<std::size_t>(block)][a] = largest(own, own.region, u);
-        }
-    });
 }
 
 }  // namespace gischt

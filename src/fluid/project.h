@@ -31,9 +31,6 @@ class PressureProjection {
     ProjectionResult project(FaceField& velocity, TileField<float>& potential, double dt,
                              double tolerance, int max_iterations, BlockSpeeds& speeds, Job& job);
 
-    // Largest |component| per block of any velocity, the one of a resumed state for instance.
-    void measure_speeds(const FaceField& velocity, BlockSpeeds& speeds) const;
-
     double bytes_per_cell_iteration() const { return solver_->bytes_per_cell_iteration(); }
 
   private:

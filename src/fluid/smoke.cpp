@@ -232,10 +232,11 @@ ProjectionResult SmokeSolver::project(double dt, Job& job) {
                             params_.pressure_iterations, speeds_, job);
     state_.potential_dt = dt;
     if (!result.solve.converged) {
-        job.warn(fmt::format("pressure: residual {:.2e} after {} iterations at {:.4g} s, above "
-                             "pressure_tolerance {:.2e}",
-                             result.solve.residual, result.solve.iterations, state_.time + dt,
-                             params_.pressure_tolerance));
+        job.warn(
+            fmt::format("pressure: residual {:.2e} after {} iterations at {:.4g} s, above "
+                        "pressure_tolerance {:.2e}",
+                        result.solve.residual, result.solve.iterations, state_.time + dt,
+                        params_.pressure_tolerance));
     }
     return result;
 }
@@ -249,9 +250,9 @@ double SmokeSolver::longest_step() const {
                                             emitters_.top_density(state_.time)),
                  heat = std::max<double>(largest(blocks_, state_.temperature),
                                          emitters_.top_temperature(state_.time));
-    const double acceleration = max_component(abs(world_.gravity)) *
-                                (std::abs(params_.density_weight) * density +
-                                 thermal_expansion() * heat);
+    const double acceleration =
+        max_component(abs(world_.gravity)) *
+        (std::abs(params_.density_weight) * density + thermal_expansion() * heat);
     // (v + a dt) dt = cfl h, in the form that stays finite for small a.
     const double way = params_.cfl * domain_.h;
     const double root = speed + std::sqrt(speed * speed + 4 * acceleration * way);
@@ -298,7 +299,7 @@ void SmokeSolver::fill(const Initial& initial, Job& job) {
         std::ranges::fill(state_.potential.values(), 0.0f);  // no pressure of a time step
     } else {
         close_sides(domain_, state_.velocity);
-        projection_.measure_speeds(state_.velocity, speeds_);
+        speeds_ = measure_speeds(domain_, blocks_, state_.velocity);
     }
 }
 
@@ -306,7 +307,7 @@ void SmokeSolver::set_state(SmokeState state) {
     state_ = std::move(state);
     trim(blocks_, state_.density, 0);
     trim(blocks_, state_.temperature, 0);
-    projection_.measure_speeds(state_.velocity, speeds_);
+    speeds_ = measure_speeds(domain_, blocks_, state_.velocity);
     if (solids_.update(state_.time)) projection_.update_solids();
 }
 

@@ -69,23 +69,23 @@ void for_blocks_with_velocity(const SmokeSolver& solver, F&& f) {
 
 std::vector<TileField<float>> centered_velocity(const SmokeSolver& solver) {
     std::vector<TileField<float>> out(3, TileField<float>(solver.domain().map));
-    for_blocks_with_velocity(solver, [&](int block, const Lattice& lattice, const auto& u,
-                                         Scratch& scratch) {
-        const Box3i cells = solver.blocks().cells(block);
-        const std::array<std::ptrdiff_t, 3> stride{1, lattice.stride_y(), lattice.stride_z()};
-        float* mean = scratch.array(3, lattice.count());
-        for (std::size_t a = 0; a < static_cast<std::size_t>(solver.domain().axes()); ++a) {
-            for (int k = cells.lo.z; k < cells.hi.z; ++k) {
-                for (int j = cells.lo.y; j < cells.hi.y; ++j) {
-                    const std::ptrdiff_t at = lattice.index({cells.lo.x, j, k});
-                    for (std::ptrdiff_t i = at; i < at + cells.hi.x - cells.lo.x; ++i) {
-                        mean[i] = 0.5f * (u[a][i] + u[a][i + stride[a]]);
+    for_blocks_with_velocity(
+        solver, [&](int block, const Lattice& lattice, const auto& u, Scratch& scratch) {
+            const Box3i cells = solver.blocks().cells(block);
+            const std::array<std::ptrdiff_t, 3> stride{1, lattice.stride_y(), lattice.stride_z()};
+            float* mean = scratch.array(3, lattice.count());
+            for (std::size_t a = 0; a < static_cast<std::size_t>(solver.domain().axes()); ++a) {
+                for (int k = cells.lo.z; k < cells.hi.z; ++k) {
+                    for (int j = cells.lo.y; j < cells.hi.y; ++j) {
+                        const std::ptrdiff_t at = lattice.index({cells.lo.x, j, k});
+                        for (std::ptrdiff_t i = at; i < at + cells.hi.x - cells.lo.x; ++i) {
+                            mean[i] = 0.5f * (u[a][i] + u[a][i + stride[a]]);
+                        }
                     }
                 }
+                scatter_block(solver.blocks(), block, lattice, mean, out[a]);
             }
-            scatter_block(solver.blocks(), block, lattice, mean, out[a]);
-        }
-    });
+        });
     return out;
 }
 
@@ -147,11 +147,11 @@ Frame make_frame(const SmokeSolver& solver, int number) {
         extract({heat}, hot, static_cast<float>(solver.params().ambient_temperature), domain);
     content.insert(content.end(), hot.begin(), hot.end());
     if (output.velocity != VelocityOutput::None) {
-        frame.fields["velocity"] = extract(
-            centered_velocity(solver),
-            output.velocity == VelocityOutput::All ? all_tiles(*domain.map)
-                                                   : dilated(*domain.map, content),
-            0, domain);
+        frame.fields["velocity"] =
+            extract(centered_velocity(solver),
+                    output.velocity == VelocityOutput::All ? all_tiles(*domain.map)
+                                                           : dilated(*domain.map, content),
+                    0, domain);
     }
     if (output.pressure) {
         frame.fields["pressure"] = extract({pressure(solver)}, all_tiles(*domain.map), 0, domain);

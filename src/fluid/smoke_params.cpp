@@ -12,8 +12,8 @@ Vec3d WindParams::at(double time) const {
     // Gradient noise is zero at whole numbers, a quarter is off them; its strength is about 1/2.
     const auto noise = [&](int axis) {
         const Vec3d p(time / gust_time + 0.25, 0.25, 0.5);
-        const auto key = random_key(static_cast<std::uint64_t>(seed),
-                                    static_cast<std::uint64_t>(axis));
+        const auto key =
+            random_key(static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(axis));
         return static_cast<double>(fractal_noise(p, 2, 0.5f, key));
     };
     return mean + (2 * gust_amplitude * length(mean)) * Vec3d(noise(0), noise(1), noise(2));
@@ -95,15 +95,20 @@ const Table<SmokeParams>& smoke_table() {
                      {"monotone_cubic", Interpolation::MonotoneCubic, "sharper and slower"}},
                     {.help = "Of the carried values"})
             .add("cfl", &P::cfl,
-                 {.help = "Cells that anything may move in a step", .min = 0, .max = 32,
+                 {.help = "Cells that anything may move in a step",
+                  .min = 0,
+                  .max = 32,
                   .min_open = true})
             .add("min_substeps", &P::min_substeps,
                  {.help = "Fewest steps per frame", .min = 1, .max = 10000})
             .add("max_substeps", &P::max_substeps,
                  {.help = "Most steps per frame; beyond them cfl is exceeded with a warning",
-                  .min = 1, .max = 10000})
+                  .min = 1,
+                  .max = 10000})
             .add("pressure_tolerance", &P::pressure_tolerance,
-                 {.help = "Residual at which the pressure is good enough", .min = 0, .max = 1,
+                 {.help = "Residual at which the pressure is good enough",
+                  .min = 0,
+                  .max = 1,
                   .min_open = true})
             .add("pressure_iterations", &P::pressure_iterations,
                  {.help = "Most iterations of the pressure solver", .min = 1})

@@ -12,10 +12,10 @@ namespace gischt {
 
 // A uniform wind that the air relaxes to, with gusts: smooth noise in time, the same in every run.
 struct WindParams {
-    Keyed<Vec3d> velocity;       // m/s
-    Keyed<double> rate = 0.0;    // 1/s
-    double gust_amplitude = 0;   // share of the speed that comes and goes, in all directions
-    double gust_time = 1;        // s, between one gust and the next
+    Keyed<Vec3d> velocity;      // m/s
+    Keyed<double> rate = 0.0;   // 1/s
+    double gust_amplitude = 0;  // share of the speed that comes and goes, in all directions
+    double gust_time = 1;       // s, between one gust and the next
     std::int64_t seed = 1;
 
     // Velocity at a time, gusts included.
@@ -39,8 +39,8 @@ struct SmokeParams {
 
     double ambient_temperature = gischt::ambient_temperature;  // K
     double reference_density = 1.2;                            // kg/m^3, of air
-    double density_weight = 0;                // kappa: weight of density 1 relative to air
-    std::optional<double> thermal_expansion;  // 1/K; unset: 1 / ambient_temperature
+    double density_weight = 0;                  // kappa: weight of density 1 relative to air
+    std::optional<double> thermal_expansion;    // 1/K; unset: 1 / ambient_temperature
     Keyed<double> vorticity_confinement = 0.0;  // epsilon, 1/s
     WindParams wind;
     std::optional<double> density_half_life, temperature_half_life;        // s

@@ -15,10 +15,10 @@ SmokeSource::SmokeSource(const SmokeParams& params, const FluidWorld& world)
 
 Frame SmokeSource::frame(int number, Job& job) {
     if (number < frame_) {
-        throw Error(ErrorKind::Usage, "smoke",
-                    fmt::format("frame {} lies before frame {}, where the simulation is", number,
-                                frame_),
-                    "a simulation runs forward: load a state or start again");
+        throw Error(
+            ErrorKind::Usage, "smoke",
+            fmt::format("frame {} lies before frame {}, where the simulation is", number, frame_),
+            "a simulation runs forward: load a state or start again");
     }
     while (frame_ < number) advance_frame(job);
     return make_frame(solver_, number);
@@ -40,9 +40,10 @@ void SmokeSource::advance_frame(Job& job) {
         const double count = std::max(std::ceil(wanted * (1 - 1e-9)), static_cast<double>(least));
         if (count > allowed && !warned) {
             warned = true;
-            job.warn(fmt::format("frame {}: {:.0f} more steps wanted for cfl = {}, max_substeps "
-                                 "allows {}: the motion is coarser than asked for",
-                                 frame_ + 1, count, p.cfl, allowed));
+            job.warn(
+                fmt::format("frame {}: {:.0f} more steps wanted for cfl = {}, max_substeps "
+                            "allows {}: the motion is coarser than asked for",
+                            frame_ + 1, count, p.cfl, allowed));
         }
         const int steps = static_cast<int>(std::min(count, static_cast<double>(allowed)));
         job.progress(std::clamp(1 - rest * solver_.world().fps, 0.0, 1.0), "simulate");

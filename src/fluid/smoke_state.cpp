@@ -121,8 +121,7 @@ SmokeState load_smoke_state(const Domain& domain, const BlockMap& blocks,
     state.potential = TileField<float>(domain.map);
     state.density = SparseField(blocks, domain.map);
     state.temperature = SparseField(blocks, domain.map);
-    for_arrays(state,
-               [&](AlignedVector<float>& v) { read(v.data(), v.size() * sizeof(float)); });
+    for_arrays(state, [&](AlignedVector<float>& v) { read(v.data(), v.size() * sizeof(float)); });
     const std::uint64_t computed = hash.value();
     std::uint64_t stored = 0;
     read(&stored, sizeof stored);

@@ -12,11 +12,11 @@ enum class SolidKind { Sphere, Box, Plane };
 // A solid of a scene, in metres; it moves as its keyframes say and is not moved by the fluid.
 struct SolidParams {
     SolidKind kind = SolidKind::Sphere;
-    Keyed<Vec3d> position;            // centre; of a plane any point
-    Keyed<double> radius = 0.5;       // sphere
-    Keyed<Vec3d> size = Vec3d(1);     // box: edges
-    Vec3d normal{0, 0, 1};            // plane: the fluid is on this side
-    Keyed<Vec3d> rotation;            // axis times angle in degrees
+    Keyed<Vec3d> position;         // centre; of a plane any point
+    Keyed<double> radius = 0.5;    // sphere
+    Keyed<Vec3d> size = Vec3d(1);  // box: edges
+    Vec3d normal{0, 0, 1};         // plane: the fluid is on this side
+    Keyed<Vec3d> rotation;         // axis times angle in degrees
 
     Shape shape_at(double time) const;
     // Turns the solid's own axes into the world's.

@@ -72,9 +72,8 @@ bool SolidField::update(double time) {
     parallel_for(blocks_.size(), 1, [&](int block) { cut_block(block); });
 
     const Box3i cells = reach_of_solids();
-    center_ghosts_.find(*domain_.map, -1, cells, ghost_layers, [&](const Vec3i& c) {
-        return signed_distance(domain_.center_of(c)) < 0;
-    });
+    center_ghosts_.find(*domain_.map, -1, cells, ghost_layers,
+                        [&](const Vec3i& c) { return signed_distance(domain_.center_of(c)) < 0; });
     for (int a = 0; a < domain_.axes(); ++a) {
         Box3i faces = cells;
         if (!cells.is_empty() && cells.hi[a] == domain_.cells[a]) faces.hi[a] += 1;

@@ -20,28 +20,28 @@ struct FluidWorld {
 // What happened between two frames; one line of --stats.
 struct FrameStatistics {
     int frame = 0;
-    double time = 0;              // s
+    double time = 0;  // s
     int steps = 0;
-    int pressure_iterations = 0;  // of all steps
-    double pressure_residual = 0;    // largest of the steps: max|r| / max|b|
-    double max_divergence_dt = 0;    // largest of the steps: |div u| dt
-    double mass = 0;                 // kg: reference density times the integral of density
-    double kinetic_energy = 0;       // J
-    double max_speed = 0;            // m/s, largest component
+    int pressure_iterations = 0;   // of all steps
+    double pressure_residual = 0;  // largest of the steps: max|r| / max|b|
+    double max_divergence_dt = 0;  // largest of the steps: |div u| dt
+    double mass = 0;               // kg: reference density times the integral of density
+    double kinetic_energy = 0;     // J
+    double max_speed = 0;          // m/s, largest component
     std::int64_t cells = 0;
     int active_tiles = 0;  // with density or temperature
     double wall_seconds = 0;
 };
 
-// Where frames come from. Frame n shows the time n / fps: frame 0 is the state in the beginning, and
-// frame 1 the first that is written by custom.
+// Where frames come from. Frame n shows the time n / fps: frame 0 is the state in the beginning,
+// and frame 1 the first that is written by custom.
 class FluidSource {
   public:
     virtual ~FluidSource() = default;
 
-    // The frame of that number. A stateless source gives any; a simulation computes all frames up to
-    // it, and throws Error{Usage} when it lies before the last one. Throws Error{Cancelled} with the
-    // state of the last whole frame kept.
+    // The frame of that number. A stateless source gives any; a simulation computes all frames up
+    // to it, and throws Error{Usage} when it lies before the last one. Throws Error{Cancelled} with
+    // the state of the last whole frame kept.
     virtual Frame frame(int number, Job& job) = 0;
     // Of the frame given last.
     virtual FrameStatistics statistics() const = 0;
