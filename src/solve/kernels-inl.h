@@ -12,6 +12,10 @@
 
 #include "solve/kernels.h"
 
+// Attributes of the lambdas that for_vectors calls: the target's instructions, no call.
+#undef GISCHT_KERNEL
+#define GISCHT_KERNEL HWY_ATTR __attribute__((always_inline))
+
 HWY_BEFORE_NAMESPACE();
 namespace gischt::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -158,8 +162,8 @@ class Accumulator {
   public:
     // Written out, since what the compiler adds itself lacks the target's attributes.
     Accumulator() : plane_(hn::Zero(Floats())), sum_(0) {}
-    void add(Vec v) { plane_ = hn::Add(plane_, v); }
-    void end_plane() {
+    HWY_INLINE void add(Vec v) { plane_ = hn::Add(plane_, v); }
+    HWY_INLINE void end_plane() {
         const Floats d;
         HWY_ALIGN float lane[8];
         hn::Store(plane_, d, lane);

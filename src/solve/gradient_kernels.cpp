@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "solve/stencil_kernels.cpp"
+#define HWY_TARGET_INCLUDE "solve/gradient_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -24,12 +24,12 @@ struct MultiplyKernel {
         const float* own = a.p.tile(tile) + color * color_values;
         Accumulator total;
         for_vectors<is_2d>(
-            [&](int x, int row, int plane, int at) HWY_ATTR {
+            [&](int x, int row, int plane, int at) GISCHT_KERNEL {
                 const Vec p = hn::Load(Floats(), own + at);
                 const Neighbours n = load_neighbours<is_2d, color>(other, x, row, plane);
                 total.add(hn::Mul(p, c.apply(p, n, color, at)));
             },
-            [&]() HWY_ATTR { total.end_plane(); });
+            [&]() GISCHT_KERNEL { total.end_plane(); });
         sum += total.sum();
     }
     static void run(const MultiplyArguments& a, int tile, std::size_t at) {
@@ -62,7 +62,7 @@ struct AdvanceKernel {
         const Vec step = hn::Set(d, a.step);
         Vec largest = hn::Zero(d);
         for_vectors<is_2d>(
-            [&](int x, int row, int plane, int at) HWY_ATTR {
+            [&](int x, int row, int plane, int at) GISCHT_KERNEL {
                 const Vec p0 = hn::Load(d, red.own + at), p1 = hn::Load(d, black.own + at);
                 const Vec q0 = c.apply(p0, load_neighbours<is_2d, 0>(black, x, row, plane), 0, at);
                 const Vec q1 = c.apply(p1, load_neighbours<is_2d, 1>(red, x, row, plane), 1, at);
@@ -143,102 +143,6 @@ struct MaxKernel {
     }
 };
 
-struct SmoothArguments {
-    const StencilLevel& level;
-    Smooth what;
-    const SplitField& r;
-    SplitField& z;
-    double* sum;
-};
-
-template <bool is_2d, bool constant>
-struct FirstKernel {
-    static void run(const SmoothArguments& a, int tile, std::size_t) {
-        const Floats d;
-        const Coefficients<is_2d, constant> c(a.level, tile);
-        const float* r = a.r.tile(tile);
-        float* z = a.z.tile(tile);
-        for (int i = 0; i < color_values; i += static_cast<int>(hn::Lanes(d))) {
-            hn::Store(hn::Mul(c.inverse_diagonal(0, i), hn::Load(d, r + i)), d, z + i);
-        }
-    }
-};
-
-template <bool is_2d, bool constant>
-struct SmoothKernel {
-    template <int color>
-    static double half(const SmoothArguments& a, int tile) {
-        const Floats d;
-        const Coefficients<is_2d, constant> c(a.level, tile);
-        const Around other = around(a.level, tile, a.z, 1 - color);
-        const float* r = a.r.tile(tile) + color * color_values;
-        float* z = a.z.tile(tile) + color * color_values;
-        Accumulator total;
-        for_vectors<is_2d>(
-            [&](int x, int row, int plane, int at) HWY_ATTR {
-                const Neighbours n = load_neighbours<is_2d, color>(other, x, row, plane);
-                const Vec rhs = hn::Load(d, r + at);
-                const Vec value =
-                    hn::Mul(c.inverse_diagonal(color, at), hn::Add(rhs, c.sum(n, color, at)));
-                hn::Store(value, d, z + at);
-                total.add(hn::Mul(rhs, value));
-            },
-            [&]() HWY_ATTR { total.end_plane(); });
-        return total.sum();
-    }
-    static void run(const SmoothArguments& a, int tile, std::size_t at) {
-        const double sum = a.what.color == 0 ? half<0>(a, tile) : half<1>(a, tile);
-        if (a.sum != nullptr) a.sum[at] = a.what.add ? a.sum[at] + sum : sum;
-    }
-};
-
-template <bool is_2d, bool constant>
-struct ResidualKernel {
-    static void run(const SmoothArguments& a, int tile, std::size_t) {
-        const Coefficients<is_2d, constant> c(a.level, tile);
-        const Around black = around(a.level, tile, a.z, 1);
-        float* red = a.z.tile(tile);
-        for_vectors<is_2d>(
-            [&](int x, int row, int plane, int at) HWY_ATTR {
-                const Neighbours n = load_neighbours<is_2d, 0>(black, x, row, plane);
-                hn::Store(c.sum(n, 0, at), Floats(), red + at);
-            },
-            []() {});
-    }
-};
-
-struct FullResidualArguments {
-    const StencilLevel& level;
-    const SplitField& r;
-    const SplitField& z;
-    SplitField& res;
-};
-
-template <bool is_2d, bool constant>
-struct FullResidualKernel {
-    template <int color>
-    static void half(const FullResidualArguments& a, int tile) {
-        const Floats d;
-        const Coefficients<is_2d, constant> c(a.level, tile);
-        const Around other = around(a.level, tile, a.z, 1 - color);
-        const int first = color * color_values;
-        const float* r = a.r.tile(tile) + first;
-        const float* z = a.z.tile(tile) + first;
-        float* res = a.res.tile(tile) + first;
-        for_vectors<is_2d>(
-            [&](int x, int row, int plane, int at) HWY_ATTR {
-                const Neighbours n = load_neighbours<is_2d, color>(other, x, row, plane);
-                const Vec q = c.apply(hn::Load(d, z + at), n, color, at);
-                hn::Store(hn::Sub(hn::Load(d, r + at), q), d, res + at);
-            },
-            []() {});
-    }
-    static void run(const FullResidualArguments& a, int tile, std::size_t) {
-        half<0>(a, tile);
-        half<1>(a, tile);
-    }
-};
-
 struct SplitArguments {
     const StencilLevel& level;
     const float* natural;
@@ -254,7 +158,7 @@ struct SplitKernel {
         const float* user = a.natural + static_cast<std::size_t>(tile) * tile_values;
         float* field = a.field.tile(tile);
         for_vectors<is_2d>(
-            [&](int x, int row, int plane, int at) HWY_ATTR {
+            [&](int x, int row, int plane, int at) GISCHT_KERNEL {
                 const float* x0 =
                     user + x + Shape<is_2d>::width * 2 * (row + Shape<is_2d>::rows * plane);
                 const Vec lower = hn::Load(d, x0), upper = hn::Load(d, x0 + Shape<is_2d>::width);
@@ -286,20 +190,6 @@ void MaxMagnitude(const TileRange& range, const SplitField& r, float* largest) {
 void Direct(const TileRange& range, float factor, const SplitField& z, SplitField& p) {
     for_tiles<DirectionKernel>(range, DirectionArguments{factor, z, p});
 }
-void SmoothRedFirst(const TileRange& range, const SplitField& r, SplitField& z) {
-    for_tiles<FirstKernel>(range, SmoothArguments{range.level, {}, r, z, nullptr});
-}
-void SmoothColor(const TileRange& range, const Smooth& what, const SplitField& r, SplitField& z,
-                 double* sum) {
-    for_tiles<SmoothKernel>(range, SmoothArguments{range.level, what, r, z, sum});
-}
-void RedResidual(const TileRange& range, SplitField& z) {
-    for_tiles<ResidualKernel>(range, SmoothArguments{range.level, {}, z, z, nullptr});
-}
-void FullResidual(const TileRange& range, const SplitField& r, const SplitField& z,
-                  SplitField& res) {
-    for_tiles<FullResidualKernel>(range, FullResidualArguments{range.level, r, z, res});
-}
 void Split(const TileRange& range, const float* natural, SplitField& field) {
     for_tiles<SplitKernel>(range, SplitArguments{range.level, natural, field});
 }
@@ -315,10 +205,6 @@ HWY_EXPORT(Advance);
 HWY_EXPORT(Dot);
 HWY_EXPORT(MaxMagnitude);
 HWY_EXPORT(Direct);
-HWY_EXPORT(SmoothRedFirst);
-HWY_EXPORT(SmoothColor);
-HWY_EXPORT(RedResidual);
-HWY_EXPORT(FullResidual);
 HWY_EXPORT(Split);
 
 void multiply_sum(const TileRange& range, const SplitField& p, std::span<double> sum) {
@@ -336,19 +222,6 @@ void max_magnitude(const TileRange& range, const SplitField& r, std::span<float>
 }
 void direction(const TileRange& range, float factor, const SplitField& z, SplitField& p) {
     HWY_DYNAMIC_DISPATCH(Direct)(range, factor, z, p);
-}
-void smooth_red_first(const TileRange& range, const SplitField& r, SplitField& z) {
-    HWY_DYNAMIC_DISPATCH(SmoothRedFirst)(range, r, z);
-}
-void smooth(const TileRange& range, const Smooth& what, const SplitField& r, SplitField& z,
-            std::span<double> sum) {
-    HWY_DYNAMIC_DISPATCH(SmoothColor)(range, what, r, z, sum.data());
-}
-void red_residual(const TileRange& range, SplitField& z) {
-    HWY_DYNAMIC_DISPATCH(RedResidual)(range, z);
-}
-void residual(const TileRange& range, const SplitField& r, const SplitField& z, SplitField& res) {
-    HWY_DYNAMIC_DISPATCH(FullResidual)(range, r, z, res);
 }
 void split(const TileRange& range, const float* natural, SplitField& field) {
     HWY_DYNAMIC_DISPATCH(Split)(range, natural, field);
