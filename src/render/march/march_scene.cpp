@@ -24,41 +24,14 @@ std::optional<NarrowLight> as_narrow(const Light& light) {
     return narrow;
 }
 
-// The phase function of an octave: its mean cosine times `factor`.
-PhaseFunction dimmed(const PhaseFunction& phase, double factor) {
-    if (std::holds_alternative<HenyeyGreensteinPhase>(phase)) {
-        const float g = std::get<HenyeyGreensteinPhase>(phase).g;
-        return HenyeyGreensteinPhase{g * static_cast<float>(factor)};
-    }
-    if (std::holds_alternative<SchlickPhase>(phase)) {
-        return SchlickPhase{std::get<SchlickPhase>(phase).k * static_cast<float>(factor)};
-    }
-    return phase;
-}
+}  // namespace
 
-std::vector<Octave> octaves_of(const Medium& medium) {
-    const MultipleScattering& m = medium.multiple_scattering();
-    std::vector<Octave> octaves;
-    double a = 1, b = 1, c = 1;
-    for (int i = 0; i <= m.octaves; ++i) {
-        octaves.push_back(
-            {static_cast<float>(a), static_cast<float>(b), dimmed(medium.phase(), c)});
-        a *= m.attenuation;
-        b *= m.contribution;
-        c *= m.eccentricity;
-    }
-    return octaves;
-}
-
-// Voxels between the nodes of a grid, such that it has at most `most` nodes.
-int spacing_for(const Medium& medium, int least, std::int64_t most) {
+int grid_spacing(const Medium& medium, int least, std::int64_t most) {
     const Vec3d n = medium.lattice().box.size();
     int spacing = least;
     while (n.x * n.y * n.z / std::pow(spacing, 3) > static_cast<double>(most)) ++spacing;
     return spacing;
 }
-
-}  // namespace
 
 MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job& job)
     : view(the_view), params(the_params) {
@@ -92,10 +65,14 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
         if (m.medium->cell_size() == 0 || m.medium->strength() == 0) continue;
         for (std::size_t l = 0; l < narrow.size(); ++l) {
             if (!narrow[l].is_infinite) continue;
-            const int spacing = spacing_for(*m.medium, 1, params.cache_nodes);
+            const int spacing = grid_spacing(*m.medium, 1, params.cache_nodes);
             m.sun_depth[l] =
                 std::make_unique<const SunDepth>(*m.medium, narrow[l].direction, spacing, job);
         }
+    }
+    for (std::size_t i = 0; i < media.size() && !broad.empty(); ++i) {
+        if (max_component(media[i].scattering) == 0) continue;
+        media[i].sky = std::make_unique<const SkyGrid>(*this, i, job);
     }
 }
 

@@ -10,15 +10,11 @@
 #include "optics/medium_depth.h"
 #include "optics/view.h"
 #include "render/march/march_params.h"
+#include "render/march/octave.h"
+#include "render/march/sky_grid.h"
 #include "render/march/sun_depth.h"
 
 namespace gischt {
-
-// One term of the approximation of multiple scattering; the first is single scattering itself.
-struct Octave {
-    float attenuation = 1, contribution = 1;
-    PhaseFunction phase;
-};
 
 // Light that comes from one direction at each point: a sun, a point, a spot.
 struct NarrowLight {
@@ -36,7 +32,11 @@ struct MarchMedium {
     std::vector<Octave> octaves;
     // Towards each narrow light, where there is one.
     std::vector<std::unique_ptr<const SunDepth>> sun_depth;
+    std::unique_ptr<const SkyGrid> sky;  // of the broad lights; null without cache
 };
+
+// Voxels between the nodes of a grid over a medium, such that it has at most `most` nodes.
+int grid_spacing(const Medium& medium, int least, std::int64_t most);
 
 // A view made ready to march through.
 struct MarchScene {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "image/color.h"
-#include "render/march/fast_exp.h"
+#include "render/march/fast_math.h"
 
 namespace gischt {
 namespace {
@@ -217,6 +217,7 @@ Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& 
 Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
                              const MarchSampler& sampler) {
     const MarchMedium& m = scene_.media[medium];
+    if (m.sky) return (*m.sky)(point);
     const Vec3d forward = normalize(ray.direction);
     const int n = scene_.params.sky_samples;
     Vec3f sum;
