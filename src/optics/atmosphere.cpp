@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/units.h"
+#include "image/color.h"
 #include "optics/blackbody.h"
 #include "optics/phase.h"
 #include "optics/spectrum.h"
@@ -91,6 +92,9 @@ Atmosphere::Atmosphere(double turbidity, double ground_albedo) : ground_albedo_(
             [&](double l) { return std::max(0.0, 1 - std::abs(l - nm) / band_step); });
         band_rgb_[b] = adapted_xyz_to_rgb(xyz);
     }
+    // White balance of a camera set to daylight.
+    const Vec3d white = to_rgb(solar_);
+    for (Vec3d& rgb : band_rgb_) rgb = rgb * (Vec3d(luminance(white)) / white);
     build_columns();
     build_multiple_scattering();
 }

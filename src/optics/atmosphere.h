@@ -37,7 +37,8 @@ class Atmosphere {
     // W/(m^2 sr nm). Local frame, z up; both unit vectors. A ray that meets the ground ends there.
     Spectrum radiance(double height, const Vec3d& direction, const Vec3d& sun) const;
 
-    // Linear Rec.709 in the renderer's unit, not cut to the gamut.
+    // Linear Rec.709 in the renderer's unit, not cut to the gamut. Balanced such that sunlight
+    // above the atmosphere is neutral, which changes a channel by 5 % at most.
     Vec3d to_rgb(const Spectrum& spectrum) const;
 
   private:

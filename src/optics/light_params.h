@@ -55,7 +55,7 @@ struct EnvironmentParams : LightParams {
 
 struct SkyParams : LightParams {
     Keyed<double> azimuth_degrees{-60}, elevation_degrees{40};  // of the sun
-    double turbidity = 2.5;
+    double turbidity = 2;
     double ground_albedo = 0.3;
     Keyed<double> strength{1};  // factor on physical W/(m^2 sr) and W/m^2
     bool sun = true;            // the sun beside the dome

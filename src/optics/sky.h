@@ -17,7 +17,7 @@ struct Sky {
 
 struct SkyState {
     double sun_elevation_degrees = 35;  // from -18 (night) to 90
-    double turbidity = 2.5;             // 1 pure air, 2 clear, 3 slightly hazy, 6 hazy
+    double turbidity = 2;               // 1 pure air, 2 clear, 3 slightly hazy, 6 hazy
     double ground_albedo = 0.3;
     bool operator==(const SkyState&) const = default;
 };

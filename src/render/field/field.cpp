@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/units.h"
 #include "grid/frame.h"
 #include "image/draw.h"
 #include "render/field/legend.h"
@@ -29,7 +31,7 @@ class FieldPicture {
         choose_quantity();
         slice_.emplace(*quantity_.field, axes_, params_.position, quantity_.at);
         choose_range();
-        style_.scale = std::max(1, std::min(view.width(), view.height()) / 300);
+        style_.scale = std::max(1, (std::min(view.width(), view.height()) + 160) / 320);
         image_ = Image::rgba(view.width(), view.height());
         fill_rectangle(image_, {0, 0}, {view.width(), view.height()}, style_.paper);
     }
@@ -65,7 +67,7 @@ class FieldPicture {
         }
         const std::vector<std::string> list(names.begin(), names.end());
         throw Error(ErrorKind::Usage, "field",
-                    "there is no field '" + params_.quantity + "' to show",
+                    fmt::format("there is no field '{}' to show", params_.quantity),
                     list.empty() ? "the view has no frame" : hint_for(params_.quantity, list));
     }
 
@@ -191,7 +193,13 @@ class FieldPicture {
         const Vec2f from{center.x - 0.5f * length.x, center.y - 0.5f * length.y};
         const Vec2f to{center.x + 0.5f * length.x, center.y + 0.5f * length.y};
         const float width = 1.0f + 0.4f * static_cast<float>(style_.scale - 1);
-        draw_arrow(image_, from, to, Vec3f(0.01f), width + 1.6f);
+        // The edge is the same arrow, dark, shifted by a little in eight directions.
+        for (int n = 0; n < 8; ++n) {
+            const auto angle = static_cast<float>(n * pi / 4);
+            const Vec2f d{0.8f * std::cos(angle), 0.8f * std::sin(angle)};
+            draw_arrow(image_, {from.x + d.x, from.y + d.y}, {to.x + d.x, to.y + d.y}, Vec3f(0.02f),
+                       width);
+        }
         draw_arrow(image_, from, to, Vec3f(0.95f), width);
     }
 
@@ -204,7 +212,7 @@ class FieldPicture {
         if (ticks_.exponent != 0) {
             unit = fmt::format("1e{}{}{}", ticks_.exponent, unit.empty() ? "" : " ", unit);
         }
-        if (!unit.empty()) title += " (" + unit + ")";
+        if (!unit.empty()) title = fmt::format("{} ({})", title, unit);
         draw_text(image_, {panel_.at.x, panel_.at.y - 14 * s}, title, style_.ink, s);
 
         std::string right = fmt::format("t = {:.3f} s", frame_->time);
