@@ -159,7 +159,8 @@ std::optional<VdbGrid> read_grid(const VdbHeader& header, const VdbEntry& entry,
     VdbGrid out;
     out.name = entry.name;
     out.metadata = entry.metadata;
-    out.field.to_world = to_transform(tree->transform());
+    guarded(reading.path, entry.name,
+            [&] { out.field.to_world = to_transform(tree->transform()); });
     if (!is_sound(out.field.to_world)) return skip("its transform has no inverse");
     out.field.kind = field_class(entry.grid_class());
     guarded(reading.path, entry.name, [&] {

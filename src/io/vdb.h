@@ -24,7 +24,7 @@ HalfVoxel half_voxel_from(const std::string& word);
 
 struct VdbReadOptions {
     // The grids to read, by the name in the file or the customary one; empty: all.
-    std::vector<std::string> grids;
+    std::vector<std::string> grids{};
     HalfVoxel half_voxel = HalfVoxel::Follow;
     // Give grids the customary names and units (docs/vdb.md), merge velocity_x/y/z, average
     // staggered vectors to cell centres. Without it every grid keeps its name, values and places.

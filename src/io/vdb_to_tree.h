@@ -16,16 +16,30 @@
 namespace gischt::vdb_detail {
 
 // The transform that puts index (i,j,k) at the cell's centre, or at its lower corner.
-inline openvdb::math::Transform::Ptr from_transform(const Transform& t, bool half_voxel) {
+inline openvdb::math::Transform::Ptr from_transform(const gischt::Transform& t, bool half_voxel) {
     const Vec3d at = half_voxel ? t.point(Vec3d(0.5)) : t.translation;
-    openvdb::Mat4d m = openvdb::Mat4d::identity();
+    const openvdb::Vec3d translation(at.x, at.y, at.z);
+    const Vec3d scale{t.column[0].x, t.column[1].y, t.column[2].z};
+    const bool is_straight = t.column[0] == Vec3d(scale.x, 0, 0) &&
+                             t.column[1] == Vec3d(0, scale.y, 0) &&
+                             t.column[2] == Vec3d(0, 0, scale.z);
+    // The simplest kind of map, which is what other programs write and test for; by way of scales,
+    // since the library's way from a matrix to a scale loses digits far from the origin.
+    using openvdb::math::Transform;
+    if (is_straight) {
+        const auto out = Transform::createLinearTransform(scale.x);
+        if (scale != Vec3d(scale.x)) {
+            out->postScale(openvdb::Vec3d(1, scale.y / scale.x, scale.z / scale.x));
+        }
+        out->postTranslate(translation);
+        return out;
+    }
+    openvdb::Mat4d m = openvdb::Mat4d::identity();  // of row vectors
     for (int r = 0; r < 4; ++r) {
         const Vec3d row = r < 3 ? t.column[static_cast<std::size_t>(r)] : at;
         for (int c = 0; c < 3; ++c) m(r, c) = row[c];
     }
-    // As the simplest kind of map, which is what other programs write and test for.
-    const auto affine = std::make_shared<openvdb::math::AffineMap>(m);
-    return std::make_shared<openvdb::math::Transform>(openvdb::math::simplify(affine));
+    return Transform::createLinearTransform(m);
 }
 
 template <class V>
@@ -119,6 +133,7 @@ typename Grid::Ptr to_tree(const Field& field, Job& job) {
     for (auto& leaf : leafs) {
         if (leaf) grid->tree().addLeaf(leaf.release());
     }
+    grid->tree().prune();  // uniform leafs become tiles
     return grid;
 }
 
