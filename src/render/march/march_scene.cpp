@@ -53,6 +53,7 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
         m.extinction = medium->cross_sections().extinction();
         m.scattering = medium->cross_sections().scattering;
         m.octaves = octaves_of(*medium);
+        m.octaves_halve = medium->multiple_scattering().attenuation == 0.5;
         m.feature = medium->cell_size() > 0 ? medium->cell_size()
                                             : length(medium->lattice().to_world.column[0]);
         is_grey = is_grey && m.extinction.x == m.extinction.y && m.extinction.x == m.extinction.z;

@@ -30,6 +30,7 @@ struct MarchMedium {
     Vec3f extinction, scattering;  // 1/m at density 1
     double feature = 1;            // metres: a voxel, or 1/64 of a homogeneous medium
     std::vector<Octave> octaves;
+    bool octaves_halve = false;  // the extinction halves from octave to octave
     // Towards each narrow light, where there is one.
     std::vector<std::unique_ptr<const SunDepth>> sun_depth;
     std::unique_ptr<const SkyGrid> sky;  // of the broad lights; null without cache

@@ -18,14 +18,32 @@ enum : std::uint32_t {
     DimensionStep = 16
 };
 
+using gischt::fast_exp;
 Vec3f fast_exp(const Vec3f& x) {
-    return {gischt::fast_exp(x.x), gischt::fast_exp(x.y), gischt::fast_exp(x.z)};
+    return {fast_exp(x.x), fast_exp(x.y), fast_exp(x.z)};
 }
 
 // (1 - exp(-e ds)) / e, which is ds where nothing absorbs.
 float source_length(float e, float transmittance, float ds) {
     const float x = e * ds;
     return x < 1e-3f ? ds * (1 - 0.5f * x) : (1 - transmittance) / e;
+}
+
+// Sum over the octaves of weight times transmittance. Where the extinction halves from octave to
+// octave the transmittances are squares of each other.
+float sum_of_octaves(const MarchMedium& m, std::span<const float> weights, float depth) {
+    float sum = 0;
+    if (m.octaves_halve) {
+        float transmittance = fast_exp(-m.octaves.back().attenuation * depth);
+        for (std::size_t o = weights.size(); o-- > 0; transmittance *= transmittance) {
+            sum += weights[o] * transmittance;
+        }
+        return sum;
+    }
+    for (std::size_t o = 0; o < weights.size(); ++o) {
+        sum += weights[o] * fast_exp(-m.octaves[o].attenuation * depth);
+    }
+    return sum;
 }
 
 }  // namespace
@@ -155,7 +173,9 @@ void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float le
             extinction += density * m.extinction;
             source += density * m.scattering * in_scattered(w.medium, ray, point, sampler);
         }
-        const Vec3f transmittance = fast_exp(-length * extinction);
+        if (extinction == Vec3f{} && source == Vec3f{}) continue;
+        const Vec3f transmittance = scene_.is_grey ? Vec3f(fast_exp(-length * extinction.x))
+                                                   : fast_exp(-length * extinction);
         const Vec3f gain{source_length(extinction.x, transmittance.x, length),
                          source_length(extinction.y, transmittance.y, length),
                          source_length(extinction.z, transmittance.z, length)};
@@ -198,18 +218,20 @@ Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& 
     }
     const Vec3f depth = scene_.depth_to(light, point, s.direction, s.distance, true);
     const MarchMedium& m = scene_.media[medium];
-    const float* weights = phase_weight_.data() + light * phase_stride_ + phase_offset_[medium];
-    const auto cosine =
-        narrow.is_infinite ? 0.0f : static_cast<float>(dot(s.direction, normalize(ray.direction)));
-    Vec3f sum;
-    for (std::size_t o = 0; o < m.octaves.size(); ++o) {
-        const Octave& octave = m.octaves[o];
-        const float phase =
-            narrow.is_infinite ? weights[o] : octave.contribution * value(octave.phase, cosine);
-        sum += phase * (scene_.is_grey ? Vec3f(gischt::fast_exp(-octave.attenuation * depth.x))
-                                       : fast_exp(-octave.attenuation * depth));
+    const float* weight = phase_weight_.data() + light * phase_stride_ + phase_offset_[medium];
+    if (!narrow.is_infinite) {
+        const auto cosine = static_cast<float>(dot(s.direction, normalize(ray.direction)));
+        local_weight_.clear();
+        for (const Octave& o : m.octaves) {
+            local_weight_.push_back(o.contribution * value(o.phase, cosine));
+        }
+        weight = local_weight_.data();
     }
-    return s.weight * sum;
+    const std::span<const float> weights(weight, m.octaves.size());
+    if (scene_.is_grey) return s.weight * sum_of_octaves(m, weights, depth.x);
+    return s.weight * Vec3f(sum_of_octaves(m, weights, depth.x),
+                            sum_of_octaves(m, weights, depth.y),
+                            sum_of_octaves(m, weights, depth.z));
 }
 
 // Directions drawn from the light and from the phase function, weighed by the balance heuristic

@@ -82,6 +82,7 @@ class RayMarcher {
     std::vector<float> phase_weight_;  // contribution * phase by octave, medium and infinite light
     std::vector<std::size_t> phase_offset_;  // of a medium in there, for light 0
     std::size_t phase_stride_ = 0;           // from light to light
+    std::vector<float> local_weight_;        // the same for one light at a finite place
     std::uint32_t step_ = 0;                 // steps done on this ray
     MarchedRay result_;
 };

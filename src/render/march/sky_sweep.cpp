@@ -31,6 +31,7 @@ SkySweep::SkySweep(const SweepGrid& grid, const Camera& camera, std::span<const 
     }
     cosine_.resize(nu);
     weight_.resize(nu);
+    term_.resize(nu);
 }
 
 void SkySweep::add(const SkyDirection& sky, const Vec3f& arriving, SweepSums& sums) {
@@ -166,12 +167,14 @@ void SkySweep::scatter_row(std::size_t first, int count, const SkyDirection& sky
         weigh(seen(octaves_[o]), sky.solid_angle * octaves_[o].contribution);
         const float a = octaves_[o].attenuation;
         for (std::size_t c = 0; c < 3; ++c) {
-            const float radiance = sky.radiance[static_cast<int>(c)];
-            const float* log_light = log_[std::min(c, channels_ - 1)].data();
-            float* sum = sums.octaves[c].data() + first;
-            for (std::size_t i = 0; i < n; ++i) {
-                sum[i] += radiance * (fast_exp(a * log_light[i]) * weight_[i]);
+            if (c < channels_) {
+                for (std::size_t i = 0; i < n; ++i) {
+                    term_[i] = fast_exp(a * log_[c][i]) * weight_[i];
+                }
             }
+            const float radiance = sky.radiance[static_cast<int>(c)];
+            float* sum = sums.octaves[c].data() + first;
+            for (std::size_t i = 0; i < n; ++i) sum[i] += radiance * term_[i];
         }
     }
 }

@@ -84,7 +84,7 @@ class SkySweep {
     std::vector<float> upwind_[3], here_[3];
     float fraction_u_ = 0, fraction_v_ = 0;
     int shift_u_ = 0, shift_v_ = 0;
-    std::vector<float> cosine_, weight_, log_[3];
+    std::vector<float> cosine_, weight_, term_, log_[3];
 };
 
 }  // namespace gischt
