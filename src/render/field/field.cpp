@@ -215,13 +215,20 @@ class FieldPicture {
         if (!unit.empty()) title = fmt::format("{} ({})", title, unit);
         draw_text(image_, {panel_.at.x, panel_.at.y - 14 * s}, title, style_.ink, s);
 
-        std::string right = fmt::format("t = {:.3f} s", frame_->time);
+        // Of the texts on the right the longest that fits beside the title.
+        const std::string time = fmt::format("t = {:.3f} s", frame_->time);
+        std::vector<std::string> choices{time, ""};
         if (arrow_speed_ > 0) {
-            right = fmt::format("arrow {:.3g} m/s   {}", arrow_speed_, right);
+            choices.insert(choices.begin(),
+                           fmt::format("arrow {:.3g} m/s   {}", arrow_speed_, time));
         }
-        const int x = panel_.at.x + panel_.size.x - text_size(right, s).x;
-        if (x > panel_.at.x + text_size(title, s).x + 6 * s) {
-            draw_text(image_, {x, panel_.at.y - 14 * s}, right, style_.ink, s);
+        const int room = panel_.size.x - text_size(title, s).x - 6 * s;
+        for (const std::string& text : choices) {
+            const int width = text_size(text, s).x;
+            if (width > room) continue;
+            const int x = panel_.at.x + panel_.size.x - width;
+            draw_text(image_, {x, panel_.at.y - 14 * s}, text, style_.ink, s);
+            break;
         }
     }
 
