@@ -61,32 +61,46 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
     }
     if (!params.light_cache) return;
     const PhaseTimer timer(job, "light");
-    for (MarchMedium& m : media) {
-        m.sun_depth.resize(narrow.size());
-        if (m.medium->cell_size() == 0 || m.medium->strength() == 0) continue;
-        for (std::size_t l = 0; l < narrow.size(); ++l) {
-            if (!narrow[l].is_infinite) continue;
-            const int spacing = grid_spacing(*m.medium, 1, params.cache_nodes);
-            m.sun_depth[l] =
-                std::make_unique<const SunDepth>(*m.medium, narrow[l].direction, spacing, job);
-        }
-    }
+    for (MarchMedium& m : media) make_depth_grids(m, job);
     for (std::size_t i = 0; i < media.size() && !broad.empty(); ++i) {
         if (max_component(media[i].scattering) == 0) continue;
         media[i].sky = std::make_unique<const SkyGrid>(*this, i, job);
     }
 }
 
-Vec3f MarchScene::depth_to(std::size_t narrow_light, const Vec3d& point, const Vec3d& direction,
-                           double distance, bool cached) const {
+// Towards each narrow light; homogeneous media need none, their depth is a product.
+void MarchScene::make_depth_grids(MarchMedium& m, Job& job) const {
+    m.sun_depth.resize(narrow.size());
+    m.point_depth.resize(narrow.size());
+    if (m.medium->cell_size() == 0 || m.medium->strength() == 0) return;
+    const int spacing = grid_spacing(*m.medium, 1, params.cache_nodes);
+    for (std::size_t l = 0; l < narrow.size(); ++l) {
+        if (narrow[l].is_infinite) {
+            m.sun_depth[l] =
+                std::make_unique<const SunDepth>(*m.medium, narrow[l].direction, spacing, job);
+        } else if (max_component(m.scattering) > 0) {
+            const Box3d box = m.medium->bounds();
+            const LightSample s = narrow[l].light->sample(box.lo, {0, 0});
+            m.point_depth[l] = std::make_unique<const PointDepth>(
+                *m.medium, box.lo + s.distance * s.direction, spacing, shadow_steps(), job);
+        }
+    }
+}
+
+Vec3f MarchScene::depth_to(std::size_t light, const Vec3d& point, const LightSample& sample,
+                           std::size_t inside) const {
     Vec3f depth;
-    for (const MarchMedium& m : media) {
-        const SunDepth* grid =
-            cached && !m.sun_depth.empty() ? m.sun_depth[narrow_light].get() : nullptr;
-        const float integral =
-            grid ? (*grid)(point)
-                 : density_integral(*m.medium, {point, direction, 0, distance}, shadow_steps());
-        depth += integral * m.extinction;
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const MarchMedium& m = media[i];
+        const SunDepth* sun = m.sun_depth.empty() ? nullptr : m.sun_depth[light].get();
+        const PointDepth* near =
+            m.point_depth.empty() || i != inside ? nullptr : m.point_depth[light].get();
+        depth +=
+            m.extinction *
+            (sun    ? (*sun)(point)
+             : near ? (*near)(point)
+                    : density_integral(*m.medium, {point, sample.direction, 0, sample.distance},
+                                       shadow_steps()));
     }
     return depth;
 }

@@ -11,6 +11,7 @@
 #include "optics/view.h"
 #include "render/march/march_params.h"
 #include "render/march/octave.h"
+#include "render/march/point_depth.h"
 #include "render/march/sky_grid.h"
 #include "render/march/sun_depth.h"
 
@@ -31,8 +32,9 @@ struct MarchMedium {
     double feature = 1;            // metres: a voxel, or 1/64 of a homogeneous medium
     std::vector<Octave> octaves;
     bool octaves_halve = false;  // the extinction halves from octave to octave
-    // Towards each narrow light, where there is one.
+    // Towards each narrow light: the one or the other, by whether it is at infinity, or neither.
     std::vector<std::unique_ptr<const SunDepth>> sun_depth;
+    std::vector<std::unique_ptr<const PointDepth>> point_depth;
     std::unique_ptr<const SkyGrid> sky;  // of the broad lights; null without cache
 };
 
@@ -50,11 +52,14 @@ struct MarchScene {
     std::vector<const Light*> broad;  // from all of the sky
     bool is_grey = false;             // all channels of all media have the same extinction
 
-    // Optical depth from a point to a narrow light through all media; from the caches where they
-    // are allowed and there.
-    Vec3f depth_to(std::size_t narrow_light, const Vec3d& point, const Vec3d& direction,
-                   double distance, bool cached) const;
+    // Optical depth from a point in medium `inside` towards a narrow light, which `sample` is of,
+    // through all media; from the grids where there are some.
+    Vec3f depth_to(std::size_t light, const Vec3d& point, const LightSample& sample,
+                   std::size_t inside) const;
     DepthSteps shadow_steps() const { return {params.shadow_step, 16}; }
+
+  private:
+    void make_depth_grids(MarchMedium& m, Job& job) const;
 };
 
 }  // namespace gischt

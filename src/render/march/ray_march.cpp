@@ -216,7 +216,7 @@ Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& 
                                   : s.direction;
         if (scene_.view.surfaces.is_blocked({point, towards, 0, s.distance})) return {};
     }
-    const Vec3f depth = scene_.depth_to(light, point, s.direction, s.distance, true);
+    const Vec3f depth = scene_.depth_to(light, point, s, medium);
     const MarchMedium& m = scene_.media[medium];
     const float* weight = phase_weight_.data() + light * phase_stride_ + phase_offset_[medium];
     if (!narrow.is_infinite) {

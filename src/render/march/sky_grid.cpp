@@ -6,94 +6,14 @@
 
 #include "base/parallel.h"
 #include "math/interpolate.h"
-#include "render/march/fast_math.h"
+#include "render/march/light_nodes.h"
 #include "render/march/march_scene.h"
 #include "render/march/sky_sweep.h"
 
 namespace gischt {
 namespace {
 
-// Nodes and what is known of them before the sweeps.
-struct Nodes {
-    Vec3i n;
-    std::vector<std::vector<float>> extinction;  // 1/m, one or three channels
-    std::vector<std::uint8_t> is_needed, is_opaque;
-
-    std::size_t index(int i, int j, int k) const {
-        return static_cast<std::size_t>(i) +
-               static_cast<std::size_t>(n.x) *
-                   (static_cast<std::size_t>(j) +
-                    static_cast<std::size_t>(n.y) * static_cast<std::size_t>(k));
-    }
-};
-
-// Adds the density of a medium to nodes, averaged over eight points around each node.
-void add_medium(Nodes& nodes, const Transform& to_world, const MarchMedium& m, bool is_target) {
-    parallel_for(nodes.n.z, 1, [&](int k) {
-        std::vector<float> line(2 * static_cast<std::size_t>(nodes.n.x)),
-            row(static_cast<std::size_t>(nodes.n.x));
-        for (int j = 0; j < nodes.n.y; ++j) {
-            std::fill(row.begin(), row.end(), 0.0f);
-            for (int s = 0; s < 4; ++s) {
-                const Vec3d start(-0.25, j + (s % 2 ? 0.25 : -0.25), k + (s / 2 ? 0.25 : -0.25));
-                densities_on_line(*m.medium, {to_world.point(start), to_world.column[0]}, 0, 0.5,
-                                  line);
-                for (std::size_t i = 0; i < row.size(); ++i) {
-                    row[i] += 0.125f * (line[2 * i] + line[2 * i + 1]);
-                }
-            }
-            const std::size_t first = nodes.index(0, j, k);
-            for (std::size_t i = 0; i < row.size(); ++i) {
-                for (std::size_t c = 0; c < nodes.extinction.size(); ++c) {
-                    nodes.extinction[c][first + i] += row[i] * m.extinction[static_cast<int>(c)];
-                }
-                if (is_target && row[i] > 0) nodes.is_needed[first + i] = 1;
-            }
-        }
-    });
-}
-
-// A look-up beside a needed node reads its neighbours: one node more on all sides.
-void widen_needed(Nodes& nodes) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::vector<std::uint8_t> before = nodes.is_needed;
-        const std::size_t step = axis == 0   ? 1
-                                 : axis == 1 ? static_cast<std::size_t>(nodes.n.x)
-                                             : nodes.index(0, 0, 1);
-        parallel_for(nodes.n.z, 1, [&](int k) {
-            for (int j = 0; j < nodes.n.y; ++j) {
-                for (int i = 0; i < nodes.n.x; ++i) {
-                    const int at = axis == 0 ? i : axis == 1 ? j : k;
-                    const std::size_t x = nodes.index(i, j, k);
-                    if ((at > 0 && before[x - step]) ||
-                        (at + 1 < nodes.n[axis] && before[x + step])) {
-                        nodes.is_needed[x] = 1;
-                    }
-                }
-            }
-        });
-    }
-}
-
-// Marks the nodes through whose cell a surface passes.
-void find_opaque(Nodes& nodes, const Transform& to_world, const SurfaceSet& surfaces) {
-    nodes.is_opaque.assign(nodes.is_needed.size(), 0);
-    parallel_for(nodes.n.z, 1, [&](int k) {
-        for (int j = 0; j < nodes.n.y; ++j) {
-            for (int i = 0; i < nodes.n.x; ++i) {
-                const Vec3d center(i, j, k);
-                bool is_hit = false;
-                for (std::size_t a = 0; a < 3 && !is_hit; ++a) {
-                    const Vec3d d = to_world.column[a];
-                    is_hit = surfaces.is_blocked({to_world.point(center) - 0.5 * d, d, 0, 1});
-                }
-                nodes.is_opaque[nodes.index(i, j, k)] = is_hit;
-            }
-        }
-    });
-}
-
-SweepGrid sweep_grid(const Nodes& nodes, const Transform& to_world, int axis) {
+SweepGrid sweep_grid(const LightNodes& nodes, int axis) {
     SweepGrid g;
     g.axis = axis;
     g.u = axis == 0 ? 1 : 0;
@@ -101,7 +21,7 @@ SweepGrid sweep_grid(const Nodes& nodes, const Transform& to_world, int axis) {
     g.nu = nodes.n[g.u];
     g.nv = nodes.n[g.v];
     g.planes = nodes.n[axis];
-    g.to_world = to_world;
+    g.to_world = nodes.to_world;
     for (const auto& e : nodes.extinction) g.extinction.emplace_back(e.size());
     g.is_opaque.resize(nodes.is_opaque.size());
     g.needed.resize(g.row(0, g.planes));
@@ -164,27 +84,20 @@ Vec3f share_outside(const MarchScene& scene, std::size_t index, const Box3d& box
 
 SkyGrid::SkyGrid(const MarchScene& scene, std::size_t index, Job& job) {
     const MarchMedium& target = scene.media[index];
-    const Medium::Lattice lattice = target.medium->lattice();
-    if (!(lattice.box.lo.x < lattice.box.hi.x)) return;
-
-    // A node on every so many voxels, over the whole box.
     const int spacing =
         grid_spacing(*target.medium, scene.params.sky_spacing, scene.params.cache_nodes / 8);
-    const Vec3d lo(floor(lattice.box.lo / Vec3d(spacing)));
-    n_ = Vec3i(-1 * floor(-1.0 * (lattice.box.hi / Vec3d(spacing) - lo))) + Vec3i(1);
-    to_world_ = lattice.to_world * Transform::scale_translate(spacing, {}) *
-                Transform::scale_translate(1, lo);
+    LightNodes nodes(*target.medium, spacing);
+    n_ = nodes.n;
+    to_world_ = nodes.to_world;
     to_lattice_ = to_world_.inverse();
-
-    Nodes nodes{n_, {}, {}, {}};
     const std::size_t count = volume(n_);
+    if (count == 0) return;
     nodes.extinction.assign(scene.is_grey ? 1 : 3, std::vector<float>(count));
-    nodes.is_needed.assign(count, 0);
     for (std::size_t m = 0; m < scene.media.size(); ++m) {
-        add_medium(nodes, to_world_, scene.media[m], m == index);
+        nodes.add(*scene.media[m].medium, m == index);
     }
-    widen_needed(nodes);
-    if (!scene.view.surfaces.is_empty()) find_opaque(nodes, to_world_, scene.view.surfaces);
+    nodes.widen_needed();
+    nodes.find_opaque(scene.view.surfaces);
     job.check();
 
     const Camera& camera = scene.view.camera;
@@ -196,7 +109,7 @@ SkyGrid::SkyGrid(const MarchScene& scene, std::size_t index, Job& job) {
     // Directions by the axis that they are swept along.
     std::vector<SweepGrid> grids;
     std::vector<std::vector<std::size_t>> by_axis(3);
-    for (int axis = 0; axis < 3; ++axis) grids.push_back(sweep_grid(nodes, to_world_, axis));
+    for (int axis = 0; axis < 3; ++axis) grids.push_back(sweep_grid(nodes, axis));
     for (std::size_t d = 0; d < sky.size(); ++d) {
         const Vec3d c = abs(to_lattice_.vector(sky[d].direction));
         by_axis[c.x >= c.y && c.x >= c.z ? 0 : c.y >= c.z ? 1 : 2].push_back(d);
