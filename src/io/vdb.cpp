@@ -7,9 +7,9 @@
 #include <openvdb/openvdb.h>
 
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <optional>
 
 #include "base/error.h"
@@ -105,23 +105,25 @@ auto guarded(const std::string& path, const std::string& grid, F&& f) {
     }
 }
 
-// Calls f with the grid as what it is; false for types that have no place in a frame.
-template <class F>
-bool visit(const openvdb::GridBase& grid, F&& f) {
-    const auto as = [&]<class G>(const G*) {
+// The grid as what it is; nothing for types that have no place in a frame.
+VdbTree parts_of(const openvdb::GridBase& grid, const std::string& name) {
+    using namespace openvdb;
+    VdbTree out;
+    const auto take = [&]<class G>(const G*) {
         if (!grid.isType<G>()) return false;
-        f(static_cast<const G&>(grid));
+        out = vdb_detail::parts_of(static_cast<const G&>(grid).tree(), name);
         return true;
     };
-    using namespace openvdb;
-    return as(static_cast<FloatGrid*>(nullptr)) || as(static_cast<Vec3SGrid*>(nullptr)) ||
-           as(static_cast<DoubleGrid*>(nullptr)) || as(static_cast<Vec3DGrid*>(nullptr)) ||
-           as(static_cast<Int32Grid*>(nullptr)) || as(static_cast<Int64Grid*>(nullptr)) ||
-           as(static_cast<Vec3IGrid*>(nullptr)) || as(static_cast<BoolGrid*>(nullptr)) ||
-           as(static_cast<MaskGrid*>(nullptr));
+    const auto of = []<class G>() { return static_cast<const G*>(nullptr); };
+    (void)(take(of.operator()<FloatGrid>()) || take(of.operator()<Vec3SGrid>()) ||
+           take(of.operator()<DoubleGrid>()) || take(of.operator()<Vec3DGrid>()) ||
+           take(of.operator()<Int32Grid>()) || take(of.operator()<Int64Grid>()) ||
+           take(of.operator()<Vec3IGrid>()) || take(of.operator()<BoolGrid>()) ||
+           take(of.operator()<MaskGrid>()));
+    return out;
 }
 
-// Types that visit() knows, by their names in files.
+// Types that parts_of() knows, by their names in files.
 bool is_known_type(const std::string& type) {
     using namespace openvdb;
     for (const auto& known : {FloatGrid::gridType(), Vec3SGrid::gridType(), DoubleGrid::gridType(),
@@ -140,6 +142,18 @@ std::string why_not(const VdbEntry& entry) {
 }
 
 // ---- reading --------------------------------------------------------------------------
+
+// What the grids of one read share.
+struct Reading {
+    const std::string& path;
+    Job& job;
+    VdbBudget budget;
+};
+
+bool is_sound(const Transform& t) {
+    const double d = t.determinant();
+    return std::isfinite(d) && d != 0 && std::isfinite(dot(t.translation, t.translation));
+}
 
 FieldClass field_class(const std::string& name) {
     if (name == "level set") return FieldClass::LevelSet;
@@ -164,11 +178,9 @@ std::optional<VdbGrid> read_grid(const VdbHeader& header, const VdbEntry& entry,
     if (!is_sound(out.field.to_world)) return skip("its transform has no inverse");
     out.field.kind = field_class(entry.grid_class());
     guarded(reading.path, entry.name, [&] {
-        visit(*tree, [&](const auto& grid) {
-            using Value = typename std::decay_t<decltype(grid)>::ValueType;
-            out.is_staggered = components_of<Value> == 3 && entry.grid_class() == "staggered";
-            to_tiles(grid, reading, out);
-        });
+        const VdbTree parts = parts_of(*tree, entry.name);
+        out.is_staggered = parts.components == 3 && entry.grid_class() == "staggered";
+        tree_to_field(parts, reading.budget, out);
     });
     return out;
 }
@@ -199,44 +211,6 @@ std::vector<int> wanted_entries(const VdbHeader& header, const VdbReadOptions& o
 
 // ---- looking --------------------------------------------------------------------------
 
-// One number of a value: itself, or a vector's length.
-template <class V>
-double magnitude(const V& value) {
-    if constexpr (components_of<V> == 3) {
-        return std::sqrt(double(value[0]) * double(value[0]) + double(value[1]) * double(value[1]) +
-                         double(value[2]) * double(value[2]));
-    } else {
-        return static_cast<double>(value);
-    }
-}
-
-struct Range {
-    double min = std::numeric_limits<double>::infinity(), max = -min;
-
-    void extend(double x) {
-        if (!std::isfinite(x)) return;
-        min = std::min(min, x);
-        max = std::max(max, x);
-    }
-};
-
-template <class Grid>
-void describe(const Grid& grid, VdbGridInfo& info) {
-    const auto& tree = grid.tree();
-    info.active_voxels = static_cast<std::int64_t>(tree.activeVoxelCount());
-    openvdb::CoordBBox box;
-    if (tree.evalActiveVoxelBoundingBox(box)) {
-        info.lo = {box.min().x(), box.min().y(), box.min().z()};
-        info.hi = {box.max().x(), box.max().y(), box.max().z()};
-    }
-    Range range;
-    for (auto it = tree.cbeginValueOn(); it; ++it) range.extend(magnitude(it.getValue()));
-    if (range.min <= range.max) {
-        info.min = range.min;
-        info.max = range.max;
-    }
-}
-
 // What the file itself says of a grid that the library does not know.
 void describe_unknown(const VdbEntry& entry, VdbGridInfo& info) {
     const auto text = [&](const char* key) {
@@ -264,7 +238,7 @@ VdbGridInfo grid_info(const std::string& path, const VdbHeader& header, const Vd
     }
     guarded(path, entry.name, [&] {
         const auto grid = read_tree(path, header, entry, job);
-        visit(*grid, [&](const auto& g) { describe(g, info); });
+        describe_tree(parts_of(*grid, entry.name), info);
         const auto size = grid->voxelSize();
         const auto origin = grid->transform().indexToWorld(openvdb::Vec3d(0));
         info.voxel_size = {size.x(), size.y(), size.z()};
@@ -411,7 +385,7 @@ Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job)
     const std::vector<int> wanted = wanted_entries(header, options);
 
     // Grids in parallel: decompression within one is serial in the library.
-    Reading reading{path, options, job};
+    Reading reading{path, job, {path, options.max_values}};
     std::vector<std::optional<VdbGrid>> read(wanted.size());
     std::atomic<int> done{0};
     const int count = static_cast<int>(wanted.size());

@@ -117,12 +117,12 @@ std::unique_ptr<typename Tree::LeafNodeType> make_leaf(const Field& field, const
     return is_needed ? std::move(leaf) : nullptr;
 }
 
-// Leafs are made in parallel and linked in order.
+// Leafs are made in parallel and linked in order. The grid is made and pruned by the library's
+// compiled code: instantiating Grid here would cost a minute of compilation.
 template <class Grid>
-typename Grid::Ptr to_tree(const Field& field, Job& job) {
+openvdb::GridBase::Ptr to_tree(const Field& field, Job& job) {
     using Tree = typename Grid::TreeType;
     using Leaf = typename Tree::LeafNodeType;
-    auto grid = Grid::create(background_of<typename Tree::ValueType>(field));
     const std::vector<Vec3i> origins = leaf_origins(field.map());
     std::vector<std::unique_ptr<Leaf>> leafs(origins.size());
     parallel_for(static_cast<int>(origins.size()), 64, [&](int l) {
@@ -130,10 +130,13 @@ typename Grid::Ptr to_tree(const Field& field, Job& job) {
         leafs[i] = make_leaf<Tree>(field, origins[i]);
     });
     job.check();
+    openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(Grid::gridType());
+    Tree& tree = static_cast<Grid&>(*grid).tree();
+    tree.root().setBackground(background_of<typename Tree::ValueType>(field), false);
     for (auto& leaf : leafs) {
-        if (leaf) grid->tree().addLeaf(leaf.release());
+        if (leaf) tree.addLeaf(leaf.release());
     }
-    grid->tree().prune();  // uniform leafs become tiles
+    grid->pruneGrid();  // uniform leafs become tiles
     return grid;
 }
 
