@@ -22,7 +22,7 @@ struct Positions {
 
 // The lower corner of the cell of interpolation points around each position, and the weights.
 struct Stencil {
-    Ints base;
+    HWY_ALIGN std::int32_t base[16];
     Floats fx, fy, fz;
 };
 
@@ -33,7 +33,7 @@ HWY_INLINE Stencil locate(const AdvectGeometry& g, const Positions& p, int axis,
     const Tag d;
     const auto low = hn::Set(d, static_cast<float>(margin));
     // Just below the last point that has an upper neighbour.
-    const auto high = [&](int n) {
+    const auto high = [&](int n) HWY_ATTR {
         return hn::Set(d, static_cast<float>(n - 1 - margin) - 0.001f);
     };
     const auto half = hn::Set(d, 0.5f);
@@ -52,13 +52,86 @@ HWY_INLINE Stencil locate(const AdvectGeometry& g, const Positions& p, int axis,
         base = hn::MulAdd(iz, hn::Set(d, static_cast<float>(g.size.x * g.size.y)), base);
         s.fz = hn::Sub(z, iz);
     }
-    s.base = hn::ConvertTo(IntTag(), base);
+    hn::Store(hn::ConvertTo(IntTag(), base), IntTag(), s.base);
     return s;
 }
 
 HWY_INLINE Floats mix(Floats a, Floats b, Floats t) {
     return hn::MulAdd(hn::Sub(b, a), t, a);
 }
+
+// Gathering instructions take as long as one load per lane and more. Neighbours along x come in one
+// load instead, and are sorted by transposing blocks of 4 x 4 values.
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
+
+template <int Count>
+HWY_INLINE void load_rows(const float* p, const std::int32_t* base, Floats* out) {
+    const auto index = hn::Load(IntTag(), base);
+    for (int i = 0; i < Count; ++i) out[i] = hn::GatherIndex(Tag(), p + i, index);
+}
+
+#else
+
+using Block = hn::FixedTag<float, 4>;
+
+// A vector made of one block of 128 bits per four lanes.
+template <class F>
+HWY_INLINE Floats join_blocks(F block) {
+    constexpr std::size_t lanes = hn::MaxLanes(Tag());
+    if constexpr (lanes == 4) {
+        return block(0);
+    } else if constexpr (lanes == 8) {
+        return hn::Combine(Tag(), block(1), block(0));
+    } else {
+        const hn::FixedTag<float, 8> d;
+        return hn::Combine(Tag(), hn::Combine(d, block(3), block(2)),
+                           hn::Combine(d, block(1), block(0)));
+    }
+}
+
+// out[i] of each lane = p[base + i], for i < Count, which is 2 or 4.
+template <int Count>
+HWY_INLINE void load_rows(const float* p, const std::int32_t* base, Floats* out) {
+    const Tag d;
+    const hn::Repartition<double, Tag> pairs;
+    const auto lower = [&](Floats a, Floats b) HWY_ATTR {
+        return hn::BitCast(d, hn::InterleaveLower(hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
+    };
+    const auto upper = [&](Floats a, Floats b) HWY_ATTR {
+        return hn::BitCast(
+            d, hn::InterleaveUpper(pairs, hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
+    };
+    if constexpr (Count == 2) {
+        // Rows of lanes n and n + 2 in one block: a0 b0 a2 b2 and a1 b1 a3 b3.
+        const auto two = [&](std::size_t lane) HWY_ATTR {
+            return join_blocks([&](std::size_t b) HWY_ATTR {
+                const hn::FixedTag<float, 2> d2;
+                return hn::Combine(Block(), hn::LoadU(d2, p + base[4 * b + lane + 2]),
+                                   hn::LoadU(d2, p + base[4 * b + lane]));
+            });
+        };
+        const Floats even = two(0), odd = two(1);
+        const Floats low = hn::InterleaveLower(d, even, odd),
+                     high = hn::InterleaveUpper(d, even, odd);
+        out[0] = lower(low, high);
+        out[1] = upper(low, high);
+    } else {
+        const auto row = [&](std::size_t lane) HWY_ATTR {
+            return join_blocks([&](std::size_t b)
+                                   HWY_ATTR { return hn::LoadU(Block(), p + base[4 * b + lane]); });
+        };
+        const Floats r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
+        const Floats low01 = hn::InterleaveLower(d, r0, r1), low23 = hn::InterleaveLower(d, r2, r3),
+                     high01 = hn::InterleaveUpper(d, r0, r1),
+                     high23 = hn::InterleaveUpper(d, r2, r3);
+        out[0] = lower(low01, low23);
+        out[1] = upper(low01, low23);
+        out[2] = lower(high01, high23);
+        out[3] = upper(high01, high23);
+    }
+}
+
+#endif
 
 // The values at the corners of the interpolation cell: 4 in 2-D, 8 in 3-D, x fastest.
 template <int Dim>
@@ -68,15 +141,10 @@ struct Corners {
 
 template <int Dim>
 HWY_INLINE Corners<Dim> load_corners(const AdvectGeometry& g, const float* p, const Stencil& s) {
-    const Tag d;
     const std::ptrdiff_t sy = g.size.x, sz = sy * g.size.y;
     Corners<Dim> c;
     for (int k = 0; k < (Dim == 2 ? 1 : 2); ++k) {
-        for (int j = 0; j < 2; ++j) {
-            const float* row = p + sy * j + sz * k;
-            c.v[2 * j + 4 * k] = hn::GatherIndex(d, row, s.base);
-            c.v[2 * j + 4 * k + 1] = hn::GatherIndex(d, row + 1, s.base);
-        }
+        for (int j = 0; j < 2; ++j) load_rows<2>(p + sy * j + sz * k, s.base, c.v + 2 * j + 4 * k);
     }
     return c;
 }
@@ -111,15 +179,12 @@ HWY_INLINE Floats monotone(Floats f0, Floats f1, Floats f2, Floats f3, Floats t)
 
 template <int Dim>
 HWY_INLINE Floats cubic(const AdvectGeometry& g, const float* p, const Stencil& s) {
-    const Tag d;
     const std::ptrdiff_t sy = g.size.x, sz = sy * g.size.y;
     const auto plane = [&](const float* q) HWY_ATTR {
-        Floats rows[4];
+        Floats rows[4], f[4];
         for (int j = 0; j < 4; ++j) {
-            const float* row = q + sy * (j - 1);
-            rows[j] = monotone(hn::GatherIndex(d, row - 1, s.base), hn::GatherIndex(d, row, s.base),
-                               hn::GatherIndex(d, row + 1, s.base),
-                               hn::GatherIndex(d, row + 2, s.base), s.fx);
+            load_rows<4>(q + sy * (j - 1) - 1, s.base, f);
+            rows[j] = monotone(f[0], f[1], f[2], f[3], s.fx);
         }
         return monotone(rows[0], rows[1], rows[2], rows[3], s.fy);
     };
