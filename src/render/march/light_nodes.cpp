@@ -8,7 +8,7 @@
 
 namespace gischt {
 
-LightNodes::LightNodes(const Medium& medium, int spacing) {
+LightNodes::LightNodes(const Medium& medium, double spacing) {
     const Medium::Lattice lattice = medium.lattice();
     if (!(lattice.box.lo.x < lattice.box.hi.x)) return;
     const Vec3d lo(floor(lattice.box.lo / Vec3d(spacing)));

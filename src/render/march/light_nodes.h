@@ -18,7 +18,7 @@ struct LightNodes {
     std::vector<std::uint8_t> is_opaque;         // a surface passes through its cell
 
     // Every `spacing`-th voxel of the medium's lattice, over its whole box.
-    LightNodes(const Medium& medium, int spacing);
+    LightNodes(const Medium& medium, double spacing);
 
     std::size_t index(int i, int j, int k) const {
         return static_cast<std::size_t>(i) +

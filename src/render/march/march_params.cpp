@@ -26,6 +26,12 @@ const Table<MarchParams>& march_table() {
             .add("cache_nodes", &MarchParams::cache_nodes,
                  {.help = "Most nodes of one grid; a larger volume gets a coarser grid",
                   .min = 1000})
+            .add("shadow_spacing", &MarchParams::shadow_spacing,
+                 {.unit = "voxels",
+                  .help = "Distance of the nodes of the grids of shadow towards suns and points; 0 "
+                          "takes 1, or 1/2 where a voxel's optical depth exceeds 1/2",
+                  .min = 0,
+                  .max = 64})
             .add("sky_spacing", &MarchParams::sky_spacing,
                  {.unit = "voxels",
                   .help = "Distance of the nodes of the grid of sky light",

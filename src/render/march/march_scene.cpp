@@ -26,10 +26,12 @@ std::optional<NarrowLight> as_narrow(const Light& light) {
 
 }  // namespace
 
-int grid_spacing(const Medium& medium, int least, std::int64_t most) {
+double grid_spacing(const Medium& medium, double least, std::int64_t most) {
     const Vec3d n = medium.lattice().box.size();
-    int spacing = least;
-    while (n.x * n.y * n.z / std::pow(spacing, 3) > static_cast<double>(most)) ++spacing;
+    double spacing = least;
+    while (n.x * n.y * n.z / (spacing * spacing * spacing) > static_cast<double>(most)) {
+        spacing = spacing < 1 ? 2 * spacing : spacing + 1;
+    }
     return spacing;
 }
 
@@ -73,7 +75,12 @@ void MarchScene::make_depth_grids(MarchMedium& m, Job& job) const {
     m.sun_depth.resize(narrow.size());
     m.point_depth.resize(narrow.size());
     if (m.medium->cell_size() == 0 || m.medium->strength() == 0) return;
-    const int spacing = grid_spacing(*m.medium, 1, params.cache_nodes);
+    // Where a voxel is optically thick, light falls off within it.
+    const double thickness = m.medium->cell_size() * static_cast<double>(m.medium->majorant());
+    const double least = params.shadow_spacing > 0 ? params.shadow_spacing
+                         : thickness > 0.5         ? 0.5
+                                                   : 1;
+    const double spacing = grid_spacing(*m.medium, least, params.cache_nodes);
     for (std::size_t l = 0; l < narrow.size(); ++l) {
         if (narrow[l].is_infinite) {
             m.sun_depth[l] =
@@ -81,8 +88,9 @@ void MarchScene::make_depth_grids(MarchMedium& m, Job& job) const {
         } else if (max_component(m.scattering) > 0) {
             const Box3d box = m.medium->bounds();
             const LightSample s = narrow[l].light->sample(box.lo, {0, 0});
-            m.point_depth[l] = std::make_unique<const PointDepth>(
-                *m.medium, box.lo + s.distance * s.direction, spacing, shadow_steps(), job);
+            m.point_depth[l] =
+                std::make_unique<const PointDepth>(*m.medium, box.lo + s.distance * s.direction,
+                                                   std::max(spacing, 1.0), shadow_steps(), job);
         }
     }
 }

@@ -39,7 +39,7 @@ struct MarchMedium {
 };
 
 // Voxels between the nodes of a grid over a medium, such that it has at most `most` nodes.
-int grid_spacing(const Medium& medium, int least, std::int64_t most);
+double grid_spacing(const Medium& medium, double least, std::int64_t most);
 
 // A view made ready to march through.
 struct MarchScene {

@@ -9,7 +9,7 @@
 
 namespace gischt {
 
-PointDepth::PointDepth(const Medium& medium, const Vec3d& light, int spacing,
+PointDepth::PointDepth(const Medium& medium, const Vec3d& light, double spacing,
                        const DepthSteps& steps, Job& job) {
     LightNodes nodes(medium, spacing);
     n_ = nodes.n;

@@ -12,7 +12,7 @@ namespace gischt {
 // marched once for each voxel that has or touches density, and trilinear between.
 class PointDepth {
   public:
-    PointDepth(const Medium& medium, const Vec3d& light, int spacing, const DepthSteps& steps,
+    PointDepth(const Medium& medium, const Vec3d& light, double spacing, const DepthSteps& steps,
                Job& job);
 
     // Metres times density; only for points where the medium has density.

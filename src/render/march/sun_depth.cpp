@@ -11,7 +11,7 @@
 
 namespace gischt {
 
-SunDepth::SunDepth(const Medium& medium, const Vec3d& towards, int spacing, Job& job) {
+SunDepth::SunDepth(const Medium& medium, const Vec3d& towards, double spacing, Job& job) {
     const Medium::Lattice lattice = medium.lattice();
     if (!(lattice.box.lo.x < lattice.box.hi.x)) return;
     to_world_ = lattice.to_world * Transform::scale_translate(spacing, {});
@@ -38,12 +38,10 @@ SunDepth::SunDepth(const Medium& medium, const Vec3d& towards, int spacing, Job&
     nv_ = static_cast<int>(box_.hi[v_] - box_.lo[v_]) + 4;
 
     make_planes();
-    depth_.assign(planes_.size() * static_cast<std::size_t>(nu_) * static_cast<std::size_t>(nv_),
-                  0.0f);
-    std::vector<float> ends(2 * static_cast<std::size_t>(nu_) * static_cast<std::size_t>(nv_));
+    nodes_.resize(planes_.size() * static_cast<std::size_t>(nu_) * static_cast<std::size_t>(nv_));
     for (int p = 1; p < static_cast<int>(planes_.size()); ++p) {
         job.check();
-        sweep(medium, p, ends);
+        sweep(medium, p);
     }
 }
 
@@ -72,50 +70,49 @@ Vec3d SunDepth::node(double plane, double u, double v) const {
     return to_world_.point(q);
 }
 
-// Adds the step from plane p - 1 to p by Simpson's rule. `ends` holds the densities at the nodes of
-// the plane before in its first half; the second takes those of this one.
-void SunDepth::sweep(const Medium& medium, int p, std::vector<float>& ends) {
+// Adds the step from plane p - 1 to p by Simpson's rule.
+void SunDepth::sweep(const Medium& medium, int p) {
     const Plane plane = planes_[static_cast<std::size_t>(p)];
-    const std::size_t half = ends.size() / 2;
     Vec3d along;
     along[u_] = 1;
     const Vec3d direction = to_world_.vector(along);
+    const auto step = static_cast<float>(step_length_);
     parallel_ranges(nv_, 8, [&](int begin, int end) {
-        std::vector<float> middle(static_cast<std::size_t>(nu_));
+        std::vector<float> here(static_cast<std::size_t>(nu_)),
+            middle(static_cast<std::size_t>(nu_));
         for (int j = begin; j < end; ++j) {
             const double u = static_cast<double>(plane.shift_u),
                          v = j + static_cast<double>(plane.shift_v);
-            const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(nu_);
-            const std::span<float> here(ends.data() + half + row, static_cast<std::size_t>(nu_));
             densities_on_line(medium, {node(p, u, v), direction}, 0, 1, here);
             densities_on_line(medium,
                               {node(p - 0.5, u - 0.5 * slope_u_, v - 0.5 * slope_v_), direction}, 0,
                               1, middle);
             const int from_j = j - plane.step_v;
-            if (from_j < 0 || from_j >= nv_) continue;
-            const float weight = static_cast<float>(step_length_ / 6);
+            const bool is_row_inside = from_j >= 0 && from_j < nv_;
             for (int i = 0; i < nu_; ++i) {
-                const int from_i = i - plane.step_u;
-                if (from_i < 0 || from_i >= nu_) continue;
                 const auto k = static_cast<std::size_t>(i);
-                const float before =
-                    ends[static_cast<std::size_t>(from_i) +
-                         static_cast<std::size_t>(nu_) * static_cast<std::size_t>(from_j)];
-                depth_[index(p, i, j)] = depth_[index(p - 1, from_i, from_j)] +
-                                         weight * (before + 4 * middle[k] + here[k]);
+                Node& out = nodes_[index(p, i, j)];
+                out.slope = step * here[k];
+                const int from_i = i - plane.step_u;
+                if (!is_row_inside || from_i < 0 || from_i >= nu_) continue;
+                const Node& before = nodes_[index(p - 1, from_i, from_j)];
+                out.depth =
+                    before.depth + (before.slope + 4 * step * middle[k] + out.slope) * (1.0f / 6);
             }
         }
     });
-    std::copy(ends.begin() + static_cast<std::ptrdiff_t>(half), ends.end(), ends.begin());
 }
 
 // Bilinear inside a plane.
-float SunDepth::at(int plane, float u, float v) const {
+SunDepth::Node SunDepth::at(int plane, float u, float v) const {
     const int i = std::clamp(static_cast<int>(u), 0, nu_ - 2),
               j = std::clamp(static_cast<int>(v), 0, nv_ - 2);
-    const float* d = depth_.data() + index(plane, i, j);
+    const Node* n = nodes_.data() + index(plane, i, j);
     const float fu = u - static_cast<float>(i), fv = v - static_cast<float>(j);
-    return lerp(lerp(d[0], d[1], fu), lerp(d[nu_], d[nu_ + 1], fu), fv);
+    const auto mix = [&](float Node::*m) {
+        return lerp(lerp(n[0].*m, n[1].*m, fu), lerp(n[nu_].*m, n[nu_ + 1].*m, fu), fv);
+    };
+    return {mix(&Node::depth), mix(&Node::slope)};
 }
 
 float SunDepth::operator()(const Vec3d& point) const {
@@ -135,9 +132,17 @@ float SunDepth::operator()(const Vec3d& point) const {
                 &far = planes_[static_cast<std::size_t>(p) + 1];
     const float u = static_cast<float>(q[u_] - slope_u_ * w - low_u_) - near.shift_u;
     const float v = static_cast<float>(q[v_] - slope_v_ * w - low_v_) - near.shift_v;
-    return lerp(at(p, u, v),
-                at(p + 1, u + static_cast<float>(far.step_u), v + static_cast<float>(far.step_v)),
-                static_cast<float>(w));
+    const Node a = at(p, u, v);
+    const Node b =
+        at(p + 1, u + static_cast<float>(far.step_u), v + static_cast<float>(far.step_v));
+
+    // Cubic Hermite, which rounding and bilinear slopes may take slightly out of [a, b].
+    const auto t = static_cast<float>(w);
+    const float d = b.depth - a.depth;
+    const float cubic =
+        a.depth +
+        t * (a.slope + t * (3 * d - 2 * a.slope - b.slope + t * (a.slope + b.slope - 2 * d)));
+    return std::clamp(cubic, std::min(a.depth, b.depth), std::max(a.depth, b.depth));
 }
 
 }  // namespace gischt

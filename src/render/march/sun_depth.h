@@ -12,26 +12,31 @@ namespace gischt {
 // whose planes are those of the voxels and whose columns are the light's rays: a sweep away from
 // the light adds one step per node along its own ray, so nothing is smeared, and a look-up
 // interpolates along the ray and across. (Shearing the grid to the light is the idea of shear-warp
-// rendering, Lacroute & Levoy 1994.) Error: that of linear interpolation between voxels.
+// rendering, Lacroute & Levoy 1994.) Along the ray the interpolation is cubic, its slopes being the
+// densities, for depth is strongly curved where light enters a dense medium; across it is linear.
 class SunDepth {
   public:
-    // `towards`: unit vector to the light. A node lies on every `spacing`-th voxel. Costs two
-    // density look-ups and 4 bytes per node of the medium's box.
-    SunDepth(const Medium& medium, const Vec3d& towards, int spacing, Job& job);
+    // `towards`: unit vector to the light. A node lies on every `spacing`-th voxel; half voxels are
+    // fine. Costs two density look-ups and 8 bytes per node of the medium's box.
+    SunDepth(const Medium& medium, const Vec3d& towards, double spacing, Job& job);
 
     // Metres times density from a point in metres to the light; 0 outside of the shadow.
     float operator()(const Vec3d& point) const;
-    std::size_t bytes() const { return depth_.size() * sizeof(float); }
+    std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
 
   private:
+    struct Node {
+        float depth = 0;  // metres times density
+        float slope = 0;  // density times the length of a step
+    };
     struct Plane {
         float shift_u, shift_v;  // of the columns, in [0,1)
         int step_u, step_v;      // columns that the ray has moved since the plane before
     };
 
     void make_planes();
-    void sweep(const Medium& medium, int plane, std::vector<float>& ends);
-    float at(int plane, float u, float v) const;
+    void sweep(const Medium& medium, int plane);
+    Node at(int plane, float u, float v) const;
     std::size_t index(int plane, int i, int j) const {
         return static_cast<std::size_t>(i) +
                static_cast<std::size_t>(nu_) *
@@ -51,7 +56,7 @@ class SunDepth {
     double step_length_ = 0;            // metres of a ray between planes
     int nu_ = 0, nv_ = 0;
     std::vector<Plane> planes_;
-    std::vector<float> depth_;
+    std::vector<Node> nodes_;
 };
 
 }  // namespace gischt
