@@ -44,8 +44,13 @@ class Outputs {
         }
     }
 
-    WriteOptions options() const {
+    // A colour map is a picture of itself: its codes are written as they are.
+    WriteOptions options(const Image& image) const {
         WriteOptions o;
+        if (image.metadata.get("display_referred") == "true") {
+            o.display = {.tone = ToneKind::Linear, .exposure = 0, .dither = false};
+            return o;
+        }
         o.display.tone = scene_.scene.film.tone;
         o.display.exposure = scene_.scene.film.exposure;
         return o;
@@ -57,7 +62,7 @@ class Outputs {
     void show_partial(const Image& image, int frame) const {
         for (const std::string& pattern : order_.outputs) {
             if (fs::path(pattern).extension() == ".png")
-                write_image(path_of(pattern, frame), image, options());
+                write_image(path_of(pattern, frame), image, options(image));
         }
     }
     void write(const RenderResult& result, int frame, RunStatistics& run,
@@ -68,7 +73,7 @@ class Outputs {
                 movie(pattern, result.image).add(result.image);
             } else {
                 path = path_of(pattern, frame);
-                write_image(path, result.image, options());
+                write_image(path, result.image, options(result.image));
                 written.push_back(path);
             }
             run.images.push_back({path, result.image.metadata.get("method"), frame,
@@ -94,7 +99,7 @@ class Outputs {
         }
         Mp4Options o;
         o.frames_per_second = scene_.scene.fps;
-        o.display = options().display;
+        o.display = options(image).display;
         o.metadata = image.metadata;
         movies_.emplace_back(path, std::make_unique<Mp4Writer>(path, image.width, image.height, o));
         return *movies_.back().second;
