@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "solve/poisson.h"
+#include "solve/diffusion.h"
 
 namespace {
 
@@ -141,6 +141,28 @@ BENCHMARK(set_up)
     ->Args({128, 0})
     ->Args({128, 1})
     ->Unit(benchmark::kMillisecond);
+
+// One implicit step of a scalar; arguments: cells per axis, 100 times the diffusion number.
+void diffuse_scalar(benchmark::State& state) {
+    const auto map = TileMap::box(Vec3i(static_cast<int>(state.range(0))));
+    const TileField<float> start = plume(map);
+    TileField<float> x(map);
+    Job job;
+    SolveResult result;
+    for (auto _ : state) {
+        x.values() = start.values();
+        result = diffuse(x, 0.01 * static_cast<double>(state.range(1)),
+                         {Borders::all(Border::Even), {}}, nullptr, {}, job);
+    }
+    state.counters["iterations"] = result.iterations;
+}
+BENCHMARK(diffuse_scalar)
+    ->ArgNames({"cells", "percent"})
+    ->Args({128, 10})
+    ->Args({128, 10000})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace
 

@@ -83,8 +83,13 @@ void store(const TileField<float>& x, const Unknowns& un, FaceField& u) {
     const TileMap& map = u.map();
     const Box3i known{un.offset, un.offset + un.count};
     parallel_for(map.size(), 16, [&](int t) {
+        const Box3i faces = intersection(map.cells_of(t), known);
+        if (faces.is_empty()) return;
+        float values[tile_values];
+        gather(x, {faces.lo - un.offset, faces.hi - un.offset}, un.borders, values);
+        int at = 0;
         for_cells(map, t, [&](const Vec3i& face, int v) {
-            if (known.contains(face)) component.tile(t)[v] = x.get(face - un.offset);
+            if (known.contains(face)) component.tile(t)[v] = values[at++];
         });
     });
     // The last faces are unknown at an open side and copies of the first at a periodic one.

@@ -42,7 +42,11 @@ class PoissonSolver {
     PoissonSolver& operator=(PoissonSolver&&) noexcept;
 
     // x holds the first guess (warm start) and receives the solution. Stops at residual <=
-    // tolerance.
+    // tolerance, and where rounding leaves no way down. About 10 iterations give six digits at
+    // every size, with solids that are thicker than a cell; walls of one cell take twice as many.
+    // The residual is the one that the iteration carries along; rounding x to float adds to the
+    // true one about 1e-6 max|x| / max|b|. Throws Error{Cancelled}. One solution at a time per
+    // solver.
     SolveResult solve(const TileField<float>& b, TileField<float>& x, double tolerance,
                       int max_iterations, Job& job);
 

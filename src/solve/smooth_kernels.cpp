@@ -32,7 +32,7 @@ struct FirstKernel {
 
 template <bool is_2d, bool constant>
 struct SmoothKernel {
-    template <int color>
+    template <int color, bool sums>
     static double half(const SmoothArguments& a, int tile) {
         const Floats d;
         const Coefficients<is_2d, constant> c(a.level, tile);
@@ -47,14 +47,21 @@ struct SmoothKernel {
                 const Vec value =
                     hn::Mul(c.inverse_diagonal(color, at), hn::Add(rhs, c.sum(n, color, at)));
                 hn::Store(value, d, z + at);
-                total.add(hn::Mul(rhs, value));
+                if constexpr (sums) total.add(hn::Mul(rhs, value));
             },
-            [&]() GISCHT_KERNEL { total.end_plane(); });
+            [&]() GISCHT_KERNEL {
+                if constexpr (sums) total.end_plane();
+            });
         return total.sum();
     }
     static void run(const SmoothArguments& a, int tile, std::size_t at) {
-        const double sum = a.what.color == 0 ? half<0>(a, tile) : half<1>(a, tile);
-        if (a.sum != nullptr) a.sum[at] = a.what.add ? a.sum[at] + sum : sum;
+        const bool red = a.what.color == 0;
+        if (a.sum == nullptr) {
+            red ? half<0, false>(a, tile) : half<1, false>(a, tile);
+            return;
+        }
+        const double sum = red ? half<0, true>(a, tile) : half<1, true>(a, tile);
+        a.sum[at] = a.what.add ? a.sum[at] + sum : sum;
     }
 };
 

@@ -28,9 +28,14 @@ bool all_equal(const TileField<float>& field, int tile, float v) {
     return true;
 }
 
+bool wraps(const StencilLevel& level, int axis) {
+    return level.sides[static_cast<std::size_t>(2 * axis)].kind == SideRule::Kind::Periodic;
+}
+
 // Tiles on whose faces everything is open for sure: their own lower faces, those of the tiles after
-// them, whose first ones are their upper faces, and the last faces of the box.
-std::vector<char> open_tiles(const FaceField& fraction) {
+// them, whose first ones are their upper faces, and the last faces of the box or, on a periodic
+// axis, the first ones again.
+std::vector<char> open_tiles(const StencilLevel& level, const FaceField& fraction) {
     const TileMap& map = fraction.map();
     const int tiles = map.size();
     std::vector<char> lower(static_cast<std::size_t>(tiles)), open = lower;
@@ -46,7 +51,12 @@ std::vector<char> open_tiles(const FaceField& fraction) {
     for (int t = 0; t < tiles; ++t) {
         bool all = lower[static_cast<std::size_t>(t)] != 0;
         for (int a = 0; a < fraction.axes(); ++a) {
-            const int next = map.neighbour(t, a == 0, a == 1, a == 2);
+            int next = map.neighbour(t, a == 0, a == 1, a == 2);
+            if (next < 0 && wraps(level, a)) {
+                Vec3i first = map.coord(t);
+                first[a] = 0;
+                next = map.find(first);
+            }
             all = all && (next < 0 ? last_open[static_cast<std::size_t>(a)]
                                    : lower[static_cast<std::size_t>(next)] != 0);
         }
@@ -64,8 +74,6 @@ void apply_fractions(const StencilLevel& level, const FaceField& fraction, int t
     const Vec3i first = map.first_cell(tile), size = cells.size(), extent = map.shape().extent();
     for (int a = 0; a < level.axes(); ++a) {
         const int next = map.neighbour(tile, a == 0, a == 1, a == 2);
-        const bool wraps =
-            level.sides[static_cast<std::size_t>(2 * a)].kind == SideRule::Kind::Periodic;
         for (int v = 0; v < tile_values; ++v) {
             const Vec3i c = map.shape().cell(v);
             if (c.x >= size.x || c.y >= size.y || c.z >= size.z) continue;
@@ -74,7 +82,7 @@ void apply_fractions(const StencilLevel& level, const FaceField& fraction, int t
             float upper;
             if (first[a] + up[a] == level.cells[a]) {
                 Vec3i face = first + up;
-                if (wraps) face[a] = 0;
+                if (wraps(level, a)) face[a] = 0;
                 upper = fraction.get(a, face);
             } else if (up[a] < extent[a]) {
                 upper = fraction[a].tile(tile)[map.shape().index(up.x, up.y, up.z)];
@@ -127,7 +135,7 @@ StencilLevel make_finest(const StencilSpec& spec) {
         const auto tiles = static_cast<std::size_t>(spec.map->size());
         std::vector<char> own(tiles, 0);
         if (spec.fraction != nullptr) {
-            const std::vector<char> open = open_tiles(*spec.fraction);
+            const std::vector<char> open = open_tiles(level, *spec.fraction);
             for (std::size_t t = 0; t < tiles; ++t) own[t] = open[t] == 0;
         }
         for (std::size_t t = 0; spec.extra != nullptr && t < tiles; ++t) {
