@@ -47,10 +47,14 @@ int number_in_name(const std::string& path) {
     return number;
 }
 
-void set_time(Frame& frame, const std::string& path) {
+void set_time(Frame& frame, const VdbHeader& header, const std::string& path) {
     const auto& m = frame.metadata;
     if (!number_from(m, "frame", frame.number)) frame.number = number_in_name(path);
-    if (!number_from(m, "seconds", frame.time)) number_from(m, "time", frame.time);
+    if (!number_from(m, "seconds", frame.time) && !number_from(m, "time", frame.time)) {
+        for (const VdbEntry& e : header.grids) {  // EmberGen's
+            if (number_from(e.metadata, "simulation_time", frame.time)) break;
+        }
+    }
     double fps = 0;
     if (!number_from(m, "dt", frame.dt) && number_from(m, "fps", fps) && fps > 0) {
         frame.dt = 1 / fps;
@@ -147,7 +151,7 @@ Frame assemble_frame(std::vector<VdbGrid> grids, const VdbHeader& header, const 
                      bool customary, Job& job) {
     Frame frame;
     frame.metadata = header.metadata;
-    set_time(frame, path);
+    set_time(frame, header, path);
     const VdbOrigin origin = vdb_origin(header);
     for (const VdbGrid& grid : grids) report(grid, job);
 

@@ -42,7 +42,7 @@ static double largest_error(const Field& a, const Field& b, bool relative) {
 }
 
 TEST(Vdb, RoundTripIsExactInFloat) {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
         Frame frame;
         frame.fields["density"] = random_field(seed, 1);
         frame.fields["temperature"] = random_field(seed + 10, 1, 293.15f);

@@ -76,8 +76,7 @@ inline std::vector<Vec3i> leaf_origins(const TileMap& map) {
         std::ranges::sort(out, [](const Vec3i& a, const Vec3i& b) {
             return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
         });
-        const auto tail = std::ranges::unique(out);
-        out.erase(tail.begin(), tail.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
     }
     return out;
 }
