@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "image/color.h"
+#include "optics/environment.h"
 #include "render/march/fast_math.h"
 
 namespace gischt {
@@ -245,10 +246,11 @@ Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& po
     Vec3f sum;
     for (const Light* light : scene_.broad) {
         for (int i = 0; i < 2 * n; ++i) {
-            const Vec2f u = sampler.two(DimensionStep + step_, i, 2 * n);
+            const bool from_light = i >= n;
+            const Vec2f u = sampler.two(DimensionStep + 2 * step_ + from_light, i % n, n);
             Vec3d towards;
             float light_pdf, phase_pdf;
-            if (i % 2 == 0) {
+            if (from_light) {
                 const LightSample s = light->sample(point, u);
                 towards = s.direction;
                 light_pdf = s.pdf;
@@ -294,33 +296,43 @@ Vec3f RayMarcher::shade(const SurfaceHit& hit, const MarchSampler& sampler) {
         if (scene_.view.surfaces.is_blocked(shadow)) continue;
         irradiance += static_cast<float>(cosine) * s.weight * through_media(shadow);
     }
+    for (const Light* light : scene_.broad) irradiance += sky_irradiance(*light, hit, sampler);
+    return hit.emission + static_cast<float>(1 / pi) * hit.albedo * irradiance;
+}
+
+// Directions in proportion to the cosine and, where the sky is not the same everywhere, drawn from
+// the light, weighed by the balance heuristic.
+Vec3f RayMarcher::sky_irradiance(const Light& light, const SurfaceHit& hit,
+                                 const MarchSampler& sampler) {
+    const bool is_even = dynamic_cast<const ConstantLight*>(&light) != nullptr;
     const int n = scene_.params.sky_samples;
     Vec3d tangent, bitangent;
     orthonormal_frame(hit.normal, tangent, bitangent);
-    for (const Light* light : scene_.broad) {
-        for (int i = 0; i < 2 * n; ++i) {
-            const Vec2f u = sampler.two(DimensionSky, i, 2 * n);
-            Vec3d towards;
-            if (i % 2 == 0) {
-                towards = light->sample(hit.point, u).direction;
-            } else {
-                // In proportion to the cosine.
-                const double r = std::sqrt(static_cast<double>(u.x)),
-                             turn = 2 * pi * static_cast<double>(u.y);
-                towards = r * std::cos(turn) * tangent + r * std::sin(turn) * bitangent +
-                          std::sqrt(1 - r * r) * hit.normal;
-            }
-            const double cosine = dot(towards, hit.normal);
-            const Vec3f radiance = light->radiance(towards);
-            if (cosine <= 0 || max_component(radiance) <= 0) continue;
-            const Ray shadow = leaving_ray(hit, towards);
-            if (scene_.view.surfaces.is_blocked(shadow)) continue;
-            const float pdf = light->pdf(hit.point, towards) + static_cast<float>(cosine / pi);
-            irradiance += radiance * through_media(shadow) *
-                          (static_cast<float>(cosine) / (static_cast<float>(n) * pdf));
+    Vec3f sum;
+    for (int i = 0; i < 2 * n; ++i) {
+        const bool from_light = !is_even && i >= n;
+        const Vec2f u = is_even ? sampler.two(DimensionSky, i, 2 * n)
+                                : sampler.two(DimensionSky + from_light, i % n, n);
+        Vec3d towards;
+        if (from_light) {
+            towards = light.sample(hit.point, u).direction;
+        } else {
+            const double r = std::sqrt(static_cast<double>(u.x)),
+                         turn = 2 * pi * static_cast<double>(u.y);
+            towards = r * std::cos(turn) * tangent + r * std::sin(turn) * bitangent +
+                      std::sqrt(1 - r * r) * hit.normal;
         }
+        const double cosine = dot(towards, hit.normal);
+        const Vec3f radiance = light.radiance(towards);
+        if (cosine <= 0 || max_component(radiance) <= 0) continue;
+        const Ray shadow = leaving_ray(hit, towards);
+        if (scene_.view.surfaces.is_blocked(shadow)) continue;
+        const float cosine_pdf = static_cast<float>(cosine / pi);
+        const float pdf = is_even ? 2 * cosine_pdf : light.pdf(hit.point, towards) + cosine_pdf;
+        sum += radiance * through_media(shadow) *
+               (static_cast<float>(cosine) / (static_cast<float>(n) * pdf));
     }
-    return hit.emission + static_cast<float>(1 / pi) * hit.albedo * irradiance;
+    return sum;
 }
 
 }  // namespace gischt

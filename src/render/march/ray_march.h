@@ -75,6 +75,7 @@ class RayMarcher {
     Vec3f from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
                      const MarchSampler& sampler);
     Vec3f shade(const SurfaceHit& hit, const MarchSampler& sampler);
+    Vec3f sky_irradiance(const Light& light, const SurfaceHit& hit, const MarchSampler& sampler);
     Vec3f through_media(const Ray& ray);
 
     const MarchScene& scene_;

@@ -84,7 +84,7 @@ Vec3f share_outside(const MarchScene& scene, std::size_t index, const Box3d& box
 
 SkyGrid::SkyGrid(const MarchScene& scene, std::size_t index, Job& job) {
     const MarchMedium& target = scene.media[index];
-    const int spacing =
+    const double spacing =
         grid_spacing(*target.medium, scene.params.sky_spacing, scene.params.cache_nodes / 8);
     LightNodes nodes(*target.medium, spacing);
     n_ = nodes.n;
