@@ -46,16 +46,10 @@ bool is_burning(const Frame& frame) {
     return flame && flame->map().size() > 0 && largest_value(*flame) > 0.01f;
 }
 
-// Blender's files are z up, all others are taken as y up.
-bool is_from_blender(const Frame& frame) {
-    for (const auto& [key, value] : frame.metadata) {
-        if (value.find("Blender") != std::string::npos ||
-            value.find("Mantaflow") != std::string::npos)
-            return true;
-        if (key == "creator" && value.find("gischt") != std::string::npos) return true;
-        if (key.find("blender") != std::string::npos) return true;
-    }
-    return false;
+// What the file says, as gischt's and Blender's do, else y: the habit of most other programs.
+std::string up_of(const Frame& frame) {
+    const auto up = frame.metadata.find("up");
+    return up != frame.metadata.end() && up->second == "z" ? "z" : "y";
 }
 
 // 0 of an empty list.
@@ -126,7 +120,9 @@ color = [0.8, 1.0, 1.5]
 [[light]]
 name = "daylight"
 type = "sky"
-strength = 0.004
+azimuth_degrees = -25
+elevation_degrees = 42
+strength = 0.011
 )";
 }
 
@@ -140,7 +136,7 @@ LoadedScene load_bare(const BareRequest& request, Job& job) {
     const std::string preset = !request.preset.empty() ? request.preset
                                : is_burning(*frame)    ? "fire"
                                                        : "cloud";
-    const std::string up = is_from_blender(*frame) ? "z" : "y";
+    const std::string up = up_of(*frame);
     std::string text =
         fmt::format("up = \"{}\"\nframes = [{}, {}]\n[fluid]\nname = \"volume\"\ntype = \"file\"\n",
                     up, request.frame, request.frame);

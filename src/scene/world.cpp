@@ -150,6 +150,7 @@ CameraParams World::camera(const View& view) const {
     Framing framing;
     framing.aspect = static_cast<double>(scene_.film.width) / scene_.film.height;
     framing.up = scene_.up_vector();
+    framing.elevation_degrees = -16;  // from below, so that the sky lies behind
     return fit_camera(box, framing);
 }
 

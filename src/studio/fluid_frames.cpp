@@ -46,6 +46,7 @@ Frame FluidFrames::compute(int number, RunStatistics& run, Job& job) {
     Frame frame = source_->frame(number, job);
     frame.metadata["creator"] = std::string("gischt ") + version;
     frame.metadata["scene_hash"] = scene_.hash;
+    frame.metadata["up"] = scene_.scene.up == UpAxis::Y ? "y" : "z";
     frame.metadata["fps"] = fmt::format("{:g}", scene_.scene.fps);
     run.frames.push_back({name_, number, frame.time, source_->statistics()});
     return frame;
@@ -90,6 +91,7 @@ std::shared_ptr<const Frame> FluidFrames::get(int number, RunStatistics& run, Jo
         const PhaseTimer timer(job, "read");
         VdbReadOptions options;
         options.half_voxel = HalfVoxel::Follow;
+        options.customary = false;  // the frames are gischt's own
         Frame frame = read_vdb(cache_->vdb(fluid_, number), options, job);
         frame.number = number;
         frame.time = scene_.scene.time_of(number);
