@@ -77,7 +77,7 @@ class BadScenes(CliCase):
             self.assertIn(word, error)
 
     def test_messages_name_place_fact_and_mend(self):
-        self.fails('[[fluid]]\ntype = "smoke"\nbouyancy = 3\n', "bad.toml:3:1", "bouyancy", "did you mean")
+        self.fails('[[fluid]]\ntype = "smoke"\nviscosty = 3\n', "bad.toml:3:1", "viscosty", "did you mean")
         self.fails('[fluid]\ntype = "smoke"\n[fluid.domain]\nresolution = "big"\n', "bad.toml:4", "whole number")
         self.fails('[fluid]\ntype = "smoke"\n[fluid.domain]\nresolution = -4\n', "bad.toml:4", "resolution")
         self.fails('[fluid]\ntype = "smok"\n', "did you mean 'smoke'")

@@ -153,6 +153,7 @@ Frame assemble_frame(std::vector<VdbGrid> grids, const VdbHeader& header, const 
     frame.metadata = header.metadata;
     set_time(frame, header, path);
     const VdbOrigin origin = vdb_origin(header);
+    if (origin == VdbOrigin::Mantaflow) frame.metadata.emplace("up", "z");  // Blender's axes
     for (const VdbGrid& grid : grids) report(grid, job);
 
     // Vectors to cell centres, then names, then units.

@@ -96,7 +96,7 @@ double choose_exposure(const Scene& scene, const World& world, const View& view,
         if (alpha[i] > 0.02f) seen.push_back(luminance(Vec3f(r[i], g[i], b[i])));
     }
     const double bright = percentile(std::move(seen), 0.97);
-    constexpr double wanted = 2.5;  // of the filmic curve's 16
+    constexpr double wanted = 1.6;  // of the filmic curve's 16
     return bright > 0 ? std::clamp(std::log2(wanted / bright), -20.0, 20.0) : 0;
 }
 
@@ -107,12 +107,12 @@ std::string lights_for(const std::string& preset) {
 [[light]]
 name = "moon"
 type = "sun"
-irradiance = 0.25
+irradiance = 0.5
 color = [0.8, 0.95, 1.3]
 [[light]]
 name = "dusk"
 type = "constant"
-radiance = 0.015
+radiance = 0.03
 color = [0.8, 1.0, 1.5]
 )";
     }
@@ -120,10 +120,18 @@ color = [0.8, 1.0, 1.5]
 [[light]]
 name = "daylight"
 type = "sky"
-azimuth_degrees = -25
+azimuth_degrees = -40
 elevation_degrees = 42
 strength = 0.011
 )";
+}
+
+// The dusk is as bright as the picture's exposure makes visible, whatever glows in it.
+void scale_light(Value& light, double factor) {
+    for (const char* key : {"irradiance", "radiance", "strength"}) {
+        if (const Value* strength = light.find(key))
+            light.set(key, Value(strength->number() * factor));
+    }
 }
 
 }  // namespace
@@ -162,6 +170,7 @@ LoadedScene load_bare(const BareRequest& request, Job& job) {
         const double exposure =
             choose_exposure(loaded.scene, world, world.view({frame}, request.frame, job), job);
         tree.set("film", Value()).set("exposure", Value(exposure));
+        for (Value& light : tree.find("light")->array()) scale_light(light, std::exp2(-exposure));
         loaded = load_scene_tree(name, tree, preset, request.overrides);
     }
     const Vec3d size = view.media[0]->bounds().size();

@@ -140,6 +140,38 @@ World::World(const Scene& scene)
           return read_image(file);
       }) {}
 
+// Aims a camera that sees the whole box at what the media really show, and narrows its field to
+// that.
+static void close_in(CameraParams& params, const View& view, const Framing& framing) {
+    constexpr int columns = 160;
+    const int rows = std::max(1, static_cast<int>(columns / framing.aspect));
+    const Camera camera(params, view.time, columns, rows, framing.up);
+    int left = columns, right = -1, top = rows, bottom = -1;
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            const Ray ray = camera.ray(x + 0.5, y + 0.5);
+            double depth = 0;
+            for (const auto& m : view.media) {
+                SegmentWalk walk = m->segments(ray);
+                for (MediumSegment s; walk.next(s);) depth += s.mean * (s.t1 - s.t0);
+            }
+            if (depth < 0.02) continue;  // too thin to be seen
+            left = std::min(left, x);
+            right = std::max(right, x);
+            top = std::min(top, y);
+            bottom = std::max(bottom, y);
+        }
+    }
+    if (right < left) return;
+    const double distance = length(params.target.at(0) - params.position.at(0));
+    const Ray middle = camera.ray(0.5 * (left + right + 1), 0.5 * (top + bottom + 1));
+    const double share = std::max((right - left + 3.0) / columns, (bottom - top + 3.0) / rows);
+    const double half =
+        std::tan(radians(0.5 * params.fov_degrees.at(0))) * share / (1 - 2 * framing.margin);
+    params.target = middle.at(distance);
+    params.fov_degrees = std::min(params.fov_degrees.at(0), 2 * std::atan(half) * 180 / pi);
+}
+
 CameraParams World::camera(const View& view) const {
     if (scene_.camera) return *scene_.camera;
     Box3d box = Box3d::empty();
@@ -151,7 +183,9 @@ CameraParams World::camera(const View& view) const {
     framing.aspect = static_cast<double>(scene_.film.width) / scene_.film.height;
     framing.up = scene_.up_vector();
     framing.elevation_degrees = -16;  // from below, so that the sky lies behind
-    return fit_camera(box, framing);
+    CameraParams params = fit_camera(box, framing);
+    close_in(params, view, framing);
+    return params;
 }
 
 // A fluid's frame where the scene puts it.

@@ -46,7 +46,7 @@ Frame FluidFrames::compute(int number, RunStatistics& run, Job& job) {
     Frame frame = source_->frame(number, job);
     frame.metadata["creator"] = std::string("gischt ") + version;
     frame.metadata["scene_hash"] = scene_.hash;
-    frame.metadata["up"] = scene_.scene.up == UpAxis::Y ? "y" : "z";
+    frame.metadata.emplace("up", scene_.scene.up == UpAxis::Y ? "y" : "z");
     frame.metadata["fps"] = fmt::format("{:g}", scene_.scene.fps);
     run.frames.push_back({name_, number, frame.time, source_->statistics()});
     return frame;
@@ -82,7 +82,10 @@ void FluidFrames::ensure(int number, RunStatistics& run, Job& job) {
         compute_and_write(n, run, job);
         save_state(false);
     }
-    if (number >= scene_.scene.frames.y) save_state(true);
+}
+
+void FluidFrames::finish() {
+    if (cache_ && source_) save_state(true);
 }
 
 std::shared_ptr<const Frame> FluidFrames::get(int number, RunStatistics& run, Job& job) {

@@ -23,6 +23,9 @@ class FluidFrames {
     // Makes sure that the frame lies in the cache, without reading it.
     void ensure(int number, RunStatistics& run, Job& job);
 
+    // To be called after the last frame: leaves the state from which a longer sequence goes on.
+    void finish();
+
   private:
     bool is_cached(int number) const;
     bool can_give(int number) const;

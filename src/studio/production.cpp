@@ -159,6 +159,7 @@ void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, 
                            (i + 1.0) / order.frames.count(), fmt::format("frame {}", frame));
         for (FluidFrames& fluid : fluids) fluid.ensure(frame, run, job);
     }
+    for (FluidFrames& fluid : fluids) fluid.finish();
 }
 
 std::vector<std::string> render(const LoadedScene& scene, const Order& order, RunStatistics& run,
@@ -194,6 +195,7 @@ std::vector<std::string> render(const LoadedScene& scene, const Order& order, Ru
         settings.on_partial = [&](const Image& image) { outputs.show_partial(image, number); };
         outputs.write(render_with(scene, view, settings, order, job), number, run, written);
     }
+    for (FluidFrames& fluid : fluids) fluid.finish();
     outputs.finish(written);
     return written;
 }

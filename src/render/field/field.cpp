@@ -40,7 +40,7 @@ class FieldPicture {
         lay_out();
         draw_slice();
         if (params_.arrows) draw_arrows();
-        if (params_.legend) draw_texts();
+        if (has_legend_) draw_texts();
         RenderResult result;
         describe();
         std::fill(image_.channel("A").begin(), image_.channel("A").end(), 1.0f);
@@ -94,11 +94,16 @@ class FieldPicture {
     void lay_out() {
         const int s = style_.scale;
         int left = 0, top = 0, right = 0, bottom = 0;
-        if (params_.legend) {
+        if (has_legend_) {
             ticks_ = make_ticks(range_.x, range_.y, std::clamp(view_.height() / (24 * s), 2, 8));
             left = bottom = 8 * s;
             top = 22 * s;
             right = 16 * s + legend_width(ticks_, style_);
+            // A picture too small for a legend beside a panel goes without.
+            if (left + right + 16 > view_.width() || top + bottom + 16 > view_.height()) {
+                has_legend_ = false;
+                left = top = right = bottom = 0;
+            }
         }
         const int room_x = std::max(1, view_.width() - left - right);
         const int room_y = std::max(1, view_.height() - top - bottom);
@@ -246,6 +251,7 @@ class FieldPicture {
 
     const View& view_;
     const FieldParams& params_;
+    bool has_legend_ = params_.legend;
     const Frame* frame_{};
     Quantity quantity_;
     SliceAxes axes_;
