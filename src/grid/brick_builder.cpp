@@ -21,8 +21,9 @@ using Samples = std::array<float, brick_samples>;
 struct Survey {
     float min = 0, max = 0;
     unsigned occupied = 0;
-    bool needs_float = false;
     int non_finite = 0;
+    double magnitude = 0;  // sum of |value| over the brick's own samples
+    int count = 0;         // of those that are not 0
 };
 
 Vec3i page_of(const Vec3i& brick) {
@@ -105,19 +106,6 @@ BrickVolume::Block block_of(const Samples& s, int b) {
         }
     }
     return {lo, static_cast<float>(mean), hi};
-}
-
-// Sixteen bits are too coarse when their step is more than 1/1000 of the typical value.
-bool needs_float(const Samples& s, float lo, float hi) {
-    double sum = 0;
-    int count = 0;
-    for (const float v : s) {
-        if (v == 0) continue;
-        sum += std::abs(static_cast<double>(v));
-        ++count;
-    }
-    const double step = (static_cast<double>(hi) - static_cast<double>(lo)) / 131070;
-    return count > 0 && step * count > 1e-3 * sum;
 }
 
 }  // namespace
@@ -247,7 +235,12 @@ struct BrickBuilder {
             const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
             s.min = *lo;
             s.max = *hi;
-            s.needs_float = needs_float(samples, *lo, *hi);
+            for (int i = 0; i < edge * edge * edge; ++i) {
+                const float v = samples[static_cast<std::size_t>(
+                    (i & 7) + row * ((i >> 3 & 7) + row * (i >> 6)))];
+                s.magnitude += std::abs(static_cast<double>(v));
+                s.count += v != 0;
+            }
             for (int b = 0; b < BrickVolume::brick_blocks; ++b) {
                 const BrickVolume::Block block = block_of(samples, b);
                 if (block.min != reader.background || block.max != reader.background) {
@@ -259,22 +252,35 @@ struct BrickBuilder {
         });
     }
 
+    // Sixteen bits are too coarse where a brick's step is more than 1/1000 of the field's typical
+    // value, which takes an outlier.
+    bool needs_float() const {
+        if (options.storage != BrickOptions::Storage::Auto) {
+            return options.storage == BrickOptions::Storage::Full;
+        }
+        double magnitude = 0, range = 0;
+        std::int64_t count = 0;
+        for (const Survey& s : surveys) {
+            magnitude += s.magnitude;
+            count += s.count;
+            range = std::max(range, static_cast<double>(s.max) - static_cast<double>(s.min));
+        }
+        return count > 0 && range / 131070 > 1e-3 * magnitude / static_cast<double>(count);
+    }
+
     // Numbers the bricks that have anything in them.
     void keep() {
-        bool any_float = false;
+        const bool full = needs_float();
         std::size_t kept = 0;
         for (std::size_t c = 0; c < candidates.size(); ++c) {
             const Survey& s = surveys[c];
             volume.non_finite_ += s.non_finite;
             entry(candidates[c]) = s.occupied ? static_cast<std::int32_t>(kept) : -1;
             if (!s.occupied) continue;
-            any_float = any_float || s.needs_float;
             surveys[kept] = s;
             candidates[kept++] = candidates[c];
         }
         candidates.resize(kept);
-        const bool full = options.storage == BrickOptions::Storage::Full ||
-                          (options.storage == BrickOptions::Storage::Auto && any_float);
         volume.coord_ = candidates;
         volume.blocks_.resize(kept * BrickVolume::brick_blocks);
         volume.whole_.resize(kept);

@@ -24,6 +24,14 @@ Vec3f fast_exp(const Vec3f& x) {
     return {fast_exp(x.x), fast_exp(x.y), fast_exp(x.z)};
 }
 
+// Point i of a lattice that covers the square evenly for any number of points (Roberts 2018, R2),
+// shifted by a random first one.
+Vec2f shifted(Vec2f first, int i) {
+    const float x = first.x + 0.7548777f * static_cast<float>(i),
+                y = first.y + 0.5698403f * static_cast<float>(i);
+    return {x - std::floor(x), y - std::floor(y)};
+}
+
 // (1 - exp(-e ds)) / e, which is ds where nothing absorbs.
 float source_length(float e, float transmittance, float ds) {
     const float x = e * ds;
@@ -55,13 +63,16 @@ RayMarcher::RayMarcher(const MarchScene& scene) : scene_(scene) {
         phase_stride_ += m.octaves.size();
     }
     phase_weight_.resize(phase_stride_ * scene.narrow.size());
+    sun_.resize(scene.narrow.size());
 }
 
-// The phase functions towards lights at infinity are the same all along the ray.
-void RayMarcher::weigh_phases(const Ray& ray) {
+// The phase functions towards lights at infinity are the same all along the ray, and one point of
+// the sun's disc stands for it.
+void RayMarcher::prepare_lights(const Ray& ray, const MarchSampler& sampler) {
     const Vec3d forward = normalize(ray.direction);
     for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
         if (!scene_.narrow[l].is_infinite) continue;
+        sun_[l] = scene_.narrow[l].light->sample(ray.origin, sampler.two(DimensionSun));
         const auto cosine = static_cast<float>(dot(scene_.narrow[l].direction, forward));
         std::size_t at = l * phase_stride_;
         for (const MarchMedium& m : scene_.media) {
@@ -79,7 +90,7 @@ MarchedRay RayMarcher::operator()(const Ray& camera_ray, const MarchSampler& sam
     Ray ray = camera_ray;
     const auto hit = scene_.view.surfaces.intersect(ray);
     if (hit) ray.t_max = hit->t;
-    weigh_phases(ray);
+    prepare_lights(ray, sampler);
 
     // All media at once: between two neighbouring ends of segments the set of media is constant.
     walkers_.clear();
@@ -197,13 +208,13 @@ Vec3f RayMarcher::in_scattered(std::size_t medium, const Ray& ray, const Vec3d& 
     if (max_component(scene_.media[medium].scattering) == 0) return {};
     Vec3f sum = from_broad(medium, ray, point, sampler);
     for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
-        sum += from_narrow(medium, l, ray, point, sampler);
+        sum += from_narrow(medium, l, ray, point);
     }
     return sum;
 }
 
 Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& ray,
-                              const Vec3d& point, const MarchSampler& sampler) {
+                              const Vec3d& point) {
     const NarrowLight& narrow = scene_.narrow[light];
     LightSample s;
     s.direction = narrow.direction;
@@ -212,9 +223,7 @@ Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& 
     if (max_component(s.weight) <= 0) return {};
     // Surfaces cast the soft shadow of the sun's disc.
     if (!scene_.view.surfaces.is_empty()) {
-        const Vec3d towards = narrow.is_infinite
-                                  ? narrow.light->sample(point, sampler.two(DimensionSun)).direction
-                                  : s.direction;
+        const Vec3d& towards = narrow.is_infinite ? sun_[light].direction : s.direction;
         if (scene_.view.surfaces.is_blocked({point, towards, 0, s.distance})) return {};
     }
     const Vec3f depth = scene_.depth_to(light, point, s, medium);
@@ -243,11 +252,12 @@ Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& po
     if (m.sky) return (*m.sky)(point);
     const Vec3d forward = normalize(ray.direction);
     const int n = scene_.params.sky_samples;
+    const Vec2f first = sampler.two(DimensionStep + step_);
     Vec3f sum;
     for (const Light* light : scene_.broad) {
         for (int i = 0; i < 2 * n; ++i) {
-            const bool from_light = i >= n;
-            const Vec2f u = sampler.two(DimensionStep + 2 * step_ + from_light, i % n, n);
+            const bool from_light = i % 2 == 1;
+            const Vec2f u = shifted(first, i);
             Vec3d towards;
             float light_pdf, phase_pdf;
             if (from_light) {
@@ -279,22 +289,26 @@ Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& po
     return sum;
 }
 
-Vec3f RayMarcher::through_media(const Ray& ray) {
+// Transmittance of a shadow ray. That of the sky is taken in longer steps: it is one of many.
+Vec3f RayMarcher::through_media(const Ray& ray, double step) {
     ++rays;
-    return fast_exp(-optical_depth(scene_.view.media, ray, scene_.shadow_steps(), &lookups));
+    return fast_exp(-optical_depth(scene_.view.media, ray, {step, 10}, &lookups));
 }
 
 // Lambert reflection of all lights, each seen through the media.
 Vec3f RayMarcher::shade(const SurfaceHit& hit, const MarchSampler& sampler) {
     Vec3f irradiance;
-    for (const NarrowLight& narrow : scene_.narrow) {
-        const LightSample s = narrow.light->sample(hit.point, sampler.two(DimensionSun));
+    for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
+        const NarrowLight& narrow = scene_.narrow[l];
+        const LightSample s =
+            narrow.is_infinite ? sun_[l] : narrow.light->sample(hit.point, {0, 0});
         const double cosine = dot(s.direction, hit.normal);
         if (cosine <= 0 || max_component(s.weight) <= 0) continue;
         Ray shadow = leaving_ray(hit, s.direction);
         shadow.t_max = s.distance;
         if (scene_.view.surfaces.is_blocked(shadow)) continue;
-        irradiance += static_cast<float>(cosine) * s.weight * through_media(shadow);
+        irradiance += static_cast<float>(cosine) * s.weight *
+                      through_media(shadow, scene_.params.shadow_step);
     }
     for (const Light* light : scene_.broad) irradiance += sky_irradiance(*light, hit, sampler);
     return hit.emission + static_cast<float>(1 / pi) * hit.albedo * irradiance;
@@ -308,11 +322,11 @@ Vec3f RayMarcher::sky_irradiance(const Light& light, const SurfaceHit& hit,
     const int n = scene_.params.sky_samples;
     Vec3d tangent, bitangent;
     orthonormal_frame(hit.normal, tangent, bitangent);
+    const Vec2f first = sampler.two(DimensionSky);
     Vec3f sum;
     for (int i = 0; i < 2 * n; ++i) {
-        const bool from_light = !is_even && i >= n;
-        const Vec2f u = is_even ? sampler.two(DimensionSky, i, 2 * n)
-                                : sampler.two(DimensionSky + from_light, i % n, n);
+        const bool from_light = !is_even && i % 2 == 1;
+        const Vec2f u = shifted(first, i);
         Vec3d towards;
         if (from_light) {
             towards = light.sample(hit.point, u).direction;
@@ -329,7 +343,7 @@ Vec3f RayMarcher::sky_irradiance(const Light& light, const SurfaceHit& hit,
         if (scene_.view.surfaces.is_blocked(shadow)) continue;
         const float cosine_pdf = static_cast<float>(cosine / pi);
         const float pdf = is_even ? 2 * cosine_pdf : light.pdf(hit.point, towards) + cosine_pdf;
-        sum += radiance * through_media(shadow) *
+        sum += radiance * through_media(shadow, 2 * scene_.params.shadow_step) *
                (static_cast<float>(cosine) / (static_cast<float>(n) * pdf));
     }
     return sum;

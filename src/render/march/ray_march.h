@@ -20,12 +20,6 @@ struct MarchSampler {
     Vec2f two(std::uint32_t dimension) const {
         return sobol_2d(sample, random_bits(key, dimension));
     }
-    // Point `i` of `count` that are stratified together with those of all other samples.
-    Vec2f two(std::uint32_t dimension, int i, int count) const {
-        const std::uint32_t index =
-            sample * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(i);
-        return sobol_2d(index, random_bits(key, dimension));
-    }
 };
 
 // What a camera ray sees.
@@ -64,25 +58,25 @@ class RayMarcher {
         }
     };
 
-    void weigh_phases(const Ray& ray);
+    void prepare_lights(const Ray& ray, const MarchSampler& sampler);
     void march_interval(const Ray& ray, double t0, double t1, const MarchSampler& sampler);
     void march_batch(const Ray& ray, std::span<const double> t, float length,
                      const MarchSampler& sampler);
     Vec3f in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
                        const MarchSampler& sampler);
-    Vec3f from_narrow(std::size_t medium, std::size_t light, const Ray& ray, const Vec3d& point,
-                      const MarchSampler& sampler);
+    Vec3f from_narrow(std::size_t medium, std::size_t light, const Ray& ray, const Vec3d& point);
     Vec3f from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
                      const MarchSampler& sampler);
     Vec3f shade(const SurfaceHit& hit, const MarchSampler& sampler);
     Vec3f sky_irradiance(const Light& light, const SurfaceHit& hit, const MarchSampler& sampler);
-    Vec3f through_media(const Ray& ray);
+    Vec3f through_media(const Ray& ray, double step);
 
     const MarchScene& scene_;
     std::vector<Walker> walkers_;
     std::vector<float> phase_weight_;  // contribution * phase by octave, medium and infinite light
     std::vector<std::size_t> phase_offset_;  // of a medium in there, for light 0
     std::size_t phase_stride_ = 0;           // from light to light
+    std::vector<LightSample> sun_;           // of this ray, by narrow light: a point of its disc
     std::vector<float> local_weight_;        // the same for one light at a finite place
     std::uint32_t step_ = 0;                 // steps done on this ray
     MarchedRay result_;
