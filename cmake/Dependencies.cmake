@@ -24,7 +24,3 @@ find_library(OPENVDB_LIBRARY openvdb REQUIRED)
 find_path(OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
 target_include_directories(gischt_openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE})
 target_link_libraries(gischt_openvdb INTERFACE ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
-
-find_path(STB_INCLUDE stb/stb_image.h REQUIRED)
-add_library(gischt_stb INTERFACE)
-target_include_directories(gischt_stb SYSTEM INTERFACE ${STB_INCLUDE})

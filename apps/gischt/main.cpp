@@ -2,6 +2,7 @@
 // The command line of gischt: declares the sub-commands, runs one, and turns errors into exit
 // statuses.
 #include <fmt/format.h>
+#include <hwy/targets.h>
 
 #include <cstdio>
 #include <new>
@@ -46,6 +47,17 @@ void suggest_command(const CLI::App& app, int argc, char** argv) {
                 hint_for(argv[1], names));
 }
 
+// Holds the run-time dispatch to an instruction set, so that results can be compared between
+// machines.
+void pin_simd(const std::string& name) {
+    if (name == "baseline") hwy::DisableTargets(HWY_AVX2 | HWY_AVX3);
+    if (name == "avx2") hwy::DisableTargets(HWY_AVX3);
+    if (name == "avx512" && !(hwy::SupportedTargets() & HWY_AVX3)) {
+        throw Error(ErrorKind::Usage, "--simd", "this processor has no AVX-512",
+                    "leave the flag out");
+    }
+}
+
 int run(int argc, char** argv) {
     CommandContext context;
     context.command_line = join_arguments(argc, argv);
@@ -73,6 +85,7 @@ int run(int argc, char** argv) {
     } catch (const CLI::ParseError& e) {
         throw Error(ErrorKind::Usage, "gischt", e.what(), "see gischt --help");
     }
+    pin_simd(context.simd);
     const ThreadLimit threads(context.threads);
     return context.action();
 }

@@ -119,8 +119,14 @@ std::string picture_path(const std::string& output, const std::string& name) {
 }
 
 void finish_statistics(const RunStatistics& run, const CommandContext& context, double start) {
-    if (!context.stats_file.empty())
+    if (context.verbose > 0) {
+        for (const auto& [phase, seconds] : context.job.times()) {
+            fmt::print(stderr, "{:<12} {:8.2f} s\n", phase, seconds);
+        }
+    }
+    if (!context.stats_file.empty()) {
         write_statistics(context.stats_file, run, context.job, now_seconds() - start);
+    }
 }
 
 void add_scene_flags(CLI::App& app, SceneOptions& o, bool pictures) {

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/units.h"
+#include "math/interpolate.h"
 #include "math/noise.h"
 
 namespace gischt {
