@@ -32,11 +32,10 @@ const Table<MarchParams>& march_table() {
                           "takes 1, or 1/2 where a voxel's optical depth exceeds 1/2",
                   .min = 0,
                   .max = 64})
-            .add("sky_spacing", &MarchParams::sky_spacing,
-                 {.unit = "voxels",
-                  .help = "Distance of the nodes of the grid of sky light",
-                  .min = 1,
-                  .max = 64})
+            .add("sky_nodes", &MarchParams::sky_nodes,
+                 {.help = "Nodes of the grid of sky light over a medium's box, at least half a "
+                          "voxel apart",
+                  .min = 1000})
             .add("sky_directions", &MarchParams::sky_directions,
                  {.help = "Directions from which that grid takes the sky", .min = 24, .max = 4096})
             .add("sky_samples", &MarchParams::sky_samples,

@@ -15,7 +15,7 @@ struct MarchParams {
     bool light_cache = true;                // light on grids, computed once for a frame
     std::int64_t cache_nodes = 40'000'000;  // nodes of one grid; beyond, it is made coarser
     double shadow_spacing = 0;  // voxels between the nodes of a grid of shadow; 0: by thickness
-    int sky_spacing = 2;        // voxels between the nodes of a grid of sky light
+    int sky_nodes = 300'000;    // of a grid of sky light, at least half a voxel apart
     int sky_directions = 128;   // from which the grid takes the sky
 
     int sky_samples = 4;  // directions per surface point; without cache per step too

@@ -101,8 +101,10 @@ Vec3f MarchScene::depth_to(std::size_t light, const Vec3d& point, const LightSam
     for (std::size_t i = 0; i < media.size(); ++i) {
         const MarchMedium& m = media[i];
         const SunDepth* sun = m.sun_depth.empty() ? nullptr : m.sun_depth[light].get();
+        // Beside the light its depth has a cusp that no grid holds, and the way is short.
+        const bool is_close = sample.distance < 4 * m.feature;
         const PointDepth* near =
-            m.point_depth.empty() || i != inside ? nullptr : m.point_depth[light].get();
+            m.point_depth.empty() || i != inside || is_close ? nullptr : m.point_depth[light].get();
         depth +=
             m.extinction *
             (sun    ? (*sun)(point)

@@ -131,16 +131,19 @@ MarchedRay RayMarcher::operator()(const Ray& camera_ray, const MarchSampler& sam
 void RayMarcher::march_interval(const Ray& ray, double t0, double t1, const MarchSampler& sampler) {
     const double metres = (t1 - t0) * length(ray.direction);
     double steps = 1, majorant = 0;
-    bool is_visible = false;
+    bool is_visible = false, is_plain = true;
     for (const Walker& w : walkers_) {
         if (!w.is_active) continue;
         const MarchMedium& m = scene_.media[w.medium];
         steps = std::max(steps, metres / (scene_.params.step * m.feature));
         majorant += static_cast<double>(w.segment.max);
         is_visible = is_visible || w.segment.max > 0 || m.medium->is_emissive();
+        is_plain = is_plain && w.segment.min == w.segment.max && !m.medium->is_emissive() &&
+                   max_component(m.scattering) == 0;
     }
     if (!is_visible) return;
     steps = std::max(steps, metres * majorant / scene_.params.step_depth);
+    if (is_plain) steps = 1;  // constant absorption and nothing else: one step is exact
     const int n = static_cast<int>(std::ceil(std::min(steps, 1e5)));
     const double dt = (t1 - t0) / n;
     const auto cutoff = static_cast<float>(scene_.params.cutoff);

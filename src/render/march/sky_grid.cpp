@@ -84,8 +84,9 @@ Vec3f share_outside(const MarchScene& scene, std::size_t index, const Box3d& box
 
 SkyGrid::SkyGrid(const MarchScene& scene, std::size_t index, Job& job) {
     const MarchMedium& target = scene.media[index];
+    const Vec3d extent = target.medium->lattice().box.size();
     const double spacing =
-        grid_spacing(*target.medium, scene.params.sky_spacing, scene.params.cache_nodes / 8);
+        std::max(0.5, std::cbrt(extent.x * extent.y * extent.z / scene.params.sky_nodes));
     LightNodes nodes(*target.medium, spacing);
     n_ = nodes.n;
     to_world_ = nodes.to_world;
