@@ -61,15 +61,10 @@ void FluidFrames::save_state(bool now) {
 }
 
 void FluidFrames::compute_and_write(int number, RunStatistics& run, Job& job) {
-    Frame frame;
-    try {
-        job.check();
-        frame = compute(number, run, job);
-    } catch (const Error& e) {
-        // The source keeps the last whole frame, from which a later run goes on.
-        if (e.kind() == ErrorKind::Cancelled) save_state(true);
-        throw;
-    }
+    // Between frames the state is whole and can be gone on from; in the middle of one it is not.
+    if (job.is_cancelled()) save_state(true);
+    job.check();
+    const Frame frame = compute(number, run, job);
     const PhaseTimer timer(job, "write");
     write_vdb(cache_->vdb(fluid_, number), frame, {}, job);
 }
