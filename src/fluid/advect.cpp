@@ -245,8 +245,7 @@ BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks,
     BlockSpeeds speeds(static_cast<std::size_t>(blocks.size()));
     for_blocks(blocks, [&](int block, Scratch& scratch) {
         for (int a = 0; a < domain.axes(); ++a) {
-            Box3i faces = blocks.cells(block);
-            if (faces.hi[a] == domain.cells[a]) faces.hi[a] += 1;
+            const Box3i faces = domain.faces_of(blocks.cells(block), a);
             const Lattice lattice{faces};
             float* u = scratch.array(slot_velocity, lattice.count());
             gather_block_faces(velocity, a, lattice, Borders{}, u);

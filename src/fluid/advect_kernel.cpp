@@ -7,7 +7,8 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace gischt::HWY_NAMESPACE {
+// A namespace of its own: other rooms have kernels with the same short names.
+namespace gischt::advection::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, 16>;
@@ -314,16 +315,23 @@ void advect_2d_or_3d(const AdvectGeometry& g, std::span<const AdvectedBlock> qua
     }
 }
 
-}  // namespace gischt::HWY_NAMESPACE
+}  // namespace gischt::advection::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace gischt {
+namespace advection {
 
 HWY_EXPORT(advect_2d_or_3d);
 
-void advect_block(const AdvectGeometry& geometry, std::span<const AdvectedBlock> quantities) {
+static void dispatch(const AdvectGeometry& geometry, std::span<const AdvectedBlock> quantities) {
     HWY_DYNAMIC_DISPATCH(advect_2d_or_3d)(geometry, quantities);
+}
+
+}  // namespace advection
+
+void advect_block(const AdvectGeometry& geometry, std::span<const AdvectedBlock> quantities) {
+    advection::dispatch(geometry, quantities);
 }
 
 }  // namespace gischt

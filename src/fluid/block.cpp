@@ -139,13 +139,10 @@ void fill_borders(const std::array<std::vector<Image>, 3>& images, const Box3i& 
             Vec3i shift;
             shift[a] = image.from - image.to;
             const std::ptrdiff_t offset = lattice.index(lattice.region.lo + shift);
-            for (int k = to.lo.z; k < to.hi.z; ++k) {
-                for (int j = to.lo.y; j < to.hi.y; ++j) {
-                    float* row = out + lattice.index({to.lo.x, j, k});
-                    for (int i = 0; i < to.hi.x - to.lo.x; ++i)
-                        row[i] = image.sign * row[i + offset];
-                }
-            }
+            for_rows(to, [&](const Vec3i& first, int n) {
+                float* row = out + lattice.index(first);
+                for (int i = 0; i < n; ++i) row[i] = image.sign * row[i + offset];
+            });
         }
         done.lo[a] = lattice.region.lo[a];
         done.hi[a] = lattice.region.hi[a];
@@ -200,13 +197,8 @@ void gather_block_faces(const FaceField& field, int axis, const Lattice& lattice
         Box3i end = inside;
         end.lo[axis] = count[axis] - 1;
         const auto& last = field.last[static_cast<std::size_t>(axis)];
-        for (int k = end.lo.z; k < end.hi.z; ++k) {
-            for (int j = end.lo.y; j < end.hi.y; ++j) {
-                for (int i = end.lo.x; i < end.hi.x; ++i) {
-                    out[lattice.index({i, j, k})] = last[field.last_index(axis, {i, j, k})];
-                }
-            }
-        }
+        for_cells(end,
+                  [&](const Vec3i& f) { out[lattice.index(f)] = last[field.last_index(axis, f)]; });
     }
     fill_borders(images, inside, lattice, out);
 }
@@ -236,13 +228,7 @@ void scatter_block_faces(const BlockMap& blocks, int block, int axis, const Latt
     end.lo[axis] = n;
     end.hi[axis] = n + 1;
     auto& last = field.last[static_cast<std::size_t>(axis)];
-    for (int k = end.lo.z; k < end.hi.z; ++k) {
-        for (int j = end.lo.y; j < end.hi.y; ++j) {
-            for (int i = end.lo.x; i < end.hi.x; ++i) {
-                last[field.last_index(axis, {i, j, k})] = in[lattice.index({i, j, k})];
-            }
-        }
-    }
+    for_cells(end, [&](const Vec3i& f) { last[field.last_index(axis, f)] = in[lattice.index(f)]; });
 }
 
 void clear_block(const BlockMap& blocks, int block, TileField<float>& field) {

@@ -69,6 +69,24 @@ struct Lattice {
     static Lattice around(const Box3i& cells, const Vec3i& halo, bool faces, bool is_2d);
 };
 
+// Calls f(cell) for all cells of a box, x fastest.
+template <class F>
+void for_cells(const Box3i& box, F&& f) {
+    for (int k = box.lo.z; k < box.hi.z; ++k) {
+        for (int j = box.lo.y; j < box.hi.y; ++j) {
+            for (int i = box.lo.x; i < box.hi.x; ++i) f(Vec3i(i, j, k));
+        }
+    }
+}
+
+// Calls f(first cell, length) for all rows along x of a box.
+template <class F>
+void for_rows(const Box3i& box, F&& f) {
+    for (int k = box.lo.z; k < box.hi.z; ++k) {
+        for (int j = box.lo.y; j < box.hi.y; ++j) f(Vec3i(box.lo.x, j, k), box.hi.x - box.lo.x);
+    }
+}
+
 // Scratch arrays of one thread, kept from block to block. Each has room for 64 floats beyond its
 // end, which are zero, so that vector loads may overrun.
 class Scratch {

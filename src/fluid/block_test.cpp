@@ -8,15 +8,6 @@
 namespace gischt {
 namespace {
 
-template <class F>
-void for_cells(const Box3i& box, F&& f) {
-    for (int k = box.lo.z; k < box.hi.z; ++k) {
-        for (int j = box.lo.y; j < box.hi.y; ++j) {
-            for (int i = box.lo.x; i < box.hi.x; ++i) f(Vec3i(i, j, k));
-        }
-    }
-}
-
 float any_value(const Vec3i& c, int axis) {
     const auto u = [](int a) { return static_cast<std::uint64_t>(a + 1000); };
     return random_uniform(random_key(u(c.x), u(c.y), u(c.z)), static_cast<std::uint32_t>(axis));

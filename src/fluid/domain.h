@@ -52,6 +52,12 @@ struct Domain {
     }
     Transform to_world() const { return Transform::scale_translate(h, origin); }
 
+    // The lower faces of cells along an axis, and the upper ones where the domain ends.
+    Box3i faces_of(Box3i box, int axis) const {
+        if (box.hi[axis] == cells[axis]) box.hi[axis] += 1;
+        return box;
+    }
+
     // How quantities continue beyond the sides. Scalars are stored as deviations from the ambient,
     // so that zero flows in where a side is open; walls are insulated.
     Borders scalar_borders() const;

@@ -72,15 +72,6 @@ float animated_noise(const EmitterNoise& noise, const Vec3d& p, double time, int
     return ((1 - w) * a + w * b) / std::sqrt((1 - w) * (1 - w) + w * w);
 }
 
-template <class F>
-void for_points(const Box3i& box, F&& f) {
-    for (int k = box.lo.z; k < box.hi.z; ++k) {
-        for (int j = box.lo.y; j < box.hi.y; ++j) {
-            for (int i = box.lo.x; i < box.hi.x; ++i) f(Vec3i(i, j, k));
-        }
-    }
-}
-
 Shape shape_of(const EmitterParams& p, double time) {
     if (p.kind == EmitterKind::Sphere) return Sphere{p.position.at(time), p.radius.at(time)};
     return SolidBox{p.position.at(time), p.size.at(time), {}};
@@ -160,7 +151,7 @@ void Emitters::apply(const Domain& domain, const BlockMap& blocks, double time, 
         const Active source(e, time, dt, frame_time_, domain.h);
         const Box3i reach = source.reach(domain);
         const auto pull_scalar = [&](int block, SparseField& field, double target, int channel) {
-            for_points(intersection(reach, blocks.cells(block)), [&](const Vec3i& c) {
+            for_cells(intersection(reach, blocks.cells(block)), [&](const Vec3i& c) {
                 const Vec3d p = domain.center_of(c);
                 const float k = source.pull(p);
                 if (k == 0) return;
@@ -178,9 +169,8 @@ void Emitters::apply(const Domain& domain, const BlockMap& blocks, double time, 
             if (!e.velocity) return;
             const Vec3d target = e.velocity->at(time);
             for (int a = 0; a < domain.axes(); ++a) {
-                Box3i faces = cells;
-                if (cells.hi[a] == domain.cells[a]) faces.hi[a] += 1;
-                for_points(intersection(reach, faces), [&](const Vec3i& f) {
+                const Box3i faces = domain.faces_of(cells, a);
+                for_cells(intersection(reach, faces), [&](const Vec3i& f) {
                     const Vec3d p = domain.face_center(a, f);
                     const float k = source.pull(p);
                     if (k == 0) return;

@@ -89,8 +89,7 @@ class BlockForces {
         const float* rho = load(density, block, lattice, slot_density, scratch);
         const float* theta = load(temperature, block, lattice, slot_temperature, scratch);
         for (int a = 0; a < domain_.axes(); ++a) {
-            Box3i faces = cells;
-            if (cells.hi[a] == domain_.cells[a]) faces.hi[a] += 1;
+            const Box3i faces = domain_.faces_of(cells, a);
             float* result = scratch.array(slot_out, lattice.count());
             accelerate(lattice, faces, a, u[static_cast<std::size_t>(a)], force, rho, theta,
                        result);

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid/ghosts.h"
 
-#include "base/parallel.h"
+#include "fluid/block.h"
 
 namespace gischt {
 namespace {
-
-template <class F>
-void for_points(const Box3i& box, F&& f) {
-    for (int k = box.lo.z; k < box.hi.z; ++k) {
-        for (int j = box.lo.y; j < box.hi.y; ++j) {
-            for (int i = box.lo.x; i < box.hi.x; ++i) f(Vec3i(i, j, k));
-        }
-    }
-}
 
 template <class F>
 void for_neighbours(const Box3i& box, const Vec3i& p, F&& f) {
@@ -50,12 +41,12 @@ void Ghosts::find(const TileMap& map, int axis, const Box3i& region, int layers,
         Box3i slab = region;
         slab.lo.z += k;
         slab.hi.z = slab.lo.z + 1;
-        for_points(slab, [&](const Vec3i& p) { layer_of(p) = is_covered(p) ? unknown : 0; });
+        for_cells(slab, [&](const Vec3i& p) { layer_of(p) = is_covered(p) ? unknown : 0; });
     });
 
     // Layer 1 touches the fluid, layer n + 1 touches layer n.
     std::vector<Vec3i> front, next;
-    for_points(region, [&](const Vec3i& p) {
+    for_cells(region, [&](const Vec3i& p) {
         bool touches = false;
         for_neighbours(region, p, [&](const Vec3i& q) { touches |= layer_of(q) == 0; });
         if (layer_of(p) == unknown && touches) next.push_back(p);
@@ -92,7 +83,7 @@ void Ghosts::find(const TileMap& map, int axis, const Box3i& region, int layers,
         }
         layer_end_.push_back(rules_.size());
     }
-    for_points(region, [&](const Vec3i& p) {
+    for_cells(region, [&](const Vec3i& p) {
         if (layer_of(p) >= unknown) deep_.push_back(p);
     });
 }

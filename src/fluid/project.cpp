@@ -11,20 +11,6 @@ namespace {
 // Slots of the scratch memory of a thread.
 constexpr int slot_velocity = 0, slot_fraction = 3, slot_out = 6, slot_potential = 7;
 
-// Faces of a block: those of its cells, with the upper ones at the end of the domain if asked.
-Box3i faces_of(const Domain& domain, const Box3i& cells, int axis) {
-    Box3i faces = cells;
-    if (cells.hi[axis] == domain.cells[axis]) faces.hi[axis] += 1;
-    return faces;
-}
-
-template <class F>
-void for_rows(const Box3i& box, F&& f) {
-    for (int k = box.lo.z; k < box.hi.z; ++k) {
-        for (int j = box.lo.y; j < box.hi.y; ++j) f(Vec3i(box.lo.x, j, k), box.hi.x - box.lo.x);
-    }
-}
-
 // The faces of a block's cells, upper ones included; they all exist, so that borders do not matter.
 float* load_faces(const FaceField& field, int axis, const Lattice& lattice, int slot,
                   Scratch& scratch) {
@@ -126,7 +112,7 @@ double PressureProjection::subtract_gradient(FaceField& velocity, const TileFiel
         double square = 0;
         Vec3f& speed = speeds[static_cast<std::size_t>(block)];
         for (int a = 0; a < domain_.axes(); ++a) {
-            const Box3i faces = faces_of(domain_, cells, a);
+            const Box3i faces = domain_.faces_of(cells, a);
             const Lattice own{faces};
             float* u = scratch.array(slot_velocity, own.count());
             gather_block_faces(velocity, a, own, Borders{}, u);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid/sides.h"
 
+#include "fluid/block.h"
+
 namespace gischt {
 
 void close_sides(const Domain& domain, FaceField& velocity) {
@@ -14,18 +16,13 @@ void close_sides(const Domain& domain, FaceField& velocity) {
         };
         if (is_wall(1)) std::fill(last.begin(), last.end(), 0.0f);
         if (!is_wall(0) && !domain.is_periodic(a)) continue;
-        for (int k = 0; k < faces.hi.z; ++k) {
-            for (int j = 0; j < faces.hi.y; ++j) {
-                for (int i = 0; i < faces.hi.x; ++i) {
-                    const Vec3i face{i, j, k};
-                    if (is_wall(0)) {
-                        velocity[a].ref(face) = 0;
-                    } else {
-                        last[velocity.last_index(a, face)] = velocity[a].get(face);
-                    }
-                }
+        for_cells(faces, [&](const Vec3i& face) {
+            if (is_wall(0)) {
+                velocity[a].ref(face) = 0;
+            } else {
+                last[velocity.last_index(a, face)] = velocity[a].get(face);
             }
-        }
+        });
     }
 }
 

@@ -69,15 +69,6 @@ void trim(const BlockMap& blocks, SparseField& field, float floor) {
     });
 }
 
-template <class F>
-void for_points(const Box3i& box, F&& f) {
-    for (int k = box.lo.z; k < box.hi.z; ++k) {
-        for (int j = box.lo.y; j < box.hi.y; ++j) {
-            for (int i = box.lo.x; i < box.hi.x; ++i) f(Vec3i(i, j, k));
-        }
-    }
-}
-
 }  // namespace
 
 SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
@@ -260,18 +251,20 @@ double SmokeSolver::longest_step() const {
 }
 
 double SmokeSolver::density_integral() const {
-    return domain_.cell_volume() * parallel_sum(domain_.map->size(), 16, [&](int t) {
-               double sum = 0;
-               const float* v = state_.density.values.tile(t);
-               for (int i = 0; i < tile_values; ++i) sum += static_cast<double>(v[i]);
-               return sum;
-           });
+    const TileField<float>& density = state_.density.values;
+    const double all = parallel_sum(domain_.map->size(), 16, [&](int t) {
+        double sum = 0;
+        const float* v = density.tile(t);
+        for (int i = 0; i < tile_values; ++i) sum += static_cast<double>(v[i]);
+        return sum;
+    });
+    return domain_.cell_volume() * (all - solids_.sum_inside(density));
 }
 
 void SmokeSolver::fill(const Initial& initial, Job& job) {
     parallel_for(blocks_.size(), 1, [&](int block) {
         const Box3i cells = blocks_.cells(block);
-        for_points(cells, [&](const Vec3i& c) {
+        for_cells(cells, [&](const Vec3i& c) {
             const Vec3d p = domain_.center_of(c);
             if (initial.density) {
                 state_.density.values.ref(c) = static_cast<float>(initial.density(p));
@@ -282,9 +275,8 @@ void SmokeSolver::fill(const Initial& initial, Job& job) {
             }
         });
         for (int a = 0; a < domain_.axes() && initial.velocity; ++a) {
-            Box3i faces = cells;
-            if (cells.hi[a] == domain_.cells[a]) faces.hi[a] += 1;
-            for_points(faces, [&](const Vec3i& f) {
+            const Box3i faces = domain_.faces_of(cells, a);
+            for_cells(faces, [&](const Vec3i& f) {
                 state_.velocity.ref(a, f) =
                     static_cast<float>(initial.velocity(domain_.face_center(a, f))[a]);
             });

@@ -75,14 +75,12 @@ std::vector<TileField<float>> centered_velocity(const SmokeSolver& solver) {
             const std::array<std::ptrdiff_t, 3> stride{1, lattice.stride_y(), lattice.stride_z()};
             float* mean = scratch.array(3, lattice.count());
             for (std::size_t a = 0; a < static_cast<std::size_t>(solver.domain().axes()); ++a) {
-                for (int k = cells.lo.z; k < cells.hi.z; ++k) {
-                    for (int j = cells.lo.y; j < cells.hi.y; ++j) {
-                        const std::ptrdiff_t at = lattice.index({cells.lo.x, j, k});
-                        for (std::ptrdiff_t i = at; i < at + cells.hi.x - cells.lo.x; ++i) {
-                            mean[i] = 0.5f * (u[a][i] + u[a][i + stride[a]]);
-                        }
+                for_rows(cells, [&](const Vec3i& first, int n) {
+                    const std::ptrdiff_t at = lattice.index(first);
+                    for (std::ptrdiff_t i = at; i < at + n; ++i) {
+                        mean[i] = 0.5f * (u[a][i] + u[a][i + stride[a]]);
                     }
-                }
+                });
                 scatter_block(solver.blocks(), block, lattice, mean, out[a]);
             }
         });

@@ -20,8 +20,19 @@ Frame SmokeSource::frame(int number, Job& job) {
             fmt::format("frame {} lies before frame {}, where the simulation is", number, frame_),
             "a simulation runs forward: load a state or start again");
     }
-    while (frame_ < number) advance_frame(job);
+    check_whole();
+    while (frame_ < number) {
+        is_broken_ = true;
+        advance_frame(job);
+        is_broken_ = false;
+    }
     return make_frame(solver_, number);
+}
+
+void SmokeSource::check_whole() const {
+    if (!is_broken_) return;
+    throw Error(ErrorKind::Usage, "smoke", "the simulation was stopped in the middle of a step",
+                "load a state or start again");
 }
 
 // Steps of equal length to the end of the frame, found anew after each, since speeds change.
@@ -30,7 +41,6 @@ void SmokeSource::advance_frame(Job& job) {
     const SmokeParams& p = solver_.params();
     const double end = (frame_ + 1) / solver_.world().fps;
     FrameStatistics s;
-    // A frame that was cancelled half-way would otherwise leave a time between frames.
     bool warned = false;
     while (s.steps < p.max_substeps) {
         const double rest = end - solver_.state().time;
@@ -67,6 +77,7 @@ void SmokeSource::advance_frame(Job& job) {
 }
 
 void SmokeSource::save_state(const std::filesystem::path& path) const {
+    check_whole();
     save_smoke_state(solver_.state(), frame_, path);
 }
 
@@ -75,6 +86,7 @@ void SmokeSource::load_state(const std::filesystem::path& path) {
     SmokeState state = load_smoke_state(solver_.domain(), solver_.blocks(), path, frame);
     solver_.set_state(std::move(state));
     frame_ = frame;
+    is_broken_ = false;
     statistics_ = {};
     statistics_.frame = frame;
     statistics_.time = solver_.state().time;

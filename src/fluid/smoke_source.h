@@ -24,9 +24,11 @@ class SmokeSource final : public FluidSource {
 
   private:
     void advance_frame(Job& job);
+    void check_whole() const;
 
     SmokeSolver solver_;
     int frame_ = 0;
+    bool is_broken_ = false;  // stopped in the middle of a step
     FrameStatistics statistics_;
 };
 

@@ -14,15 +14,6 @@ constexpr int ghost_layers = 4;
 // Smallest open part of a face that counts as open.
 constexpr float least_fraction = 0.01f;
 
-template <class F>
-void for_points(const Box3i& box, F&& f) {
-    for (int k = box.lo.z; k < box.hi.z; ++k) {
-        for (int j = box.lo.y; j < box.hi.y; ++j) {
-            for (int i = box.lo.x; i < box.hi.x; ++i) f(Vec3i(i, j, k));
-        }
-    }
-}
-
 }  // namespace
 
 float open_fraction(float a, float b, float c, float d) {
@@ -75,8 +66,7 @@ bool SolidField::update(double time) {
     center_ghosts_.find(*domain_.map, -1, cells, ghost_layers,
                         [&](const Vec3i& c) { return signed_distance(domain_.center_of(c)) < 0; });
     for (int a = 0; a < domain_.axes(); ++a) {
-        Box3i faces = cells;
-        if (!cells.is_empty() && cells.hi[a] == domain_.cells[a]) faces.hi[a] += 1;
+        const Box3i faces = cells.is_empty() ? cells : domain_.faces_of(cells, a);
         face_ghosts_[static_cast<std::size_t>(a)].find(
             *domain_.map, a, faces, ghost_layers,
             [&](const Vec3i& f) { return fraction_.get(a, f) == 0; });
@@ -150,7 +140,7 @@ void SolidField::cut_block(int block) {
     cut_[static_cast<std::size_t>(block)] = 1;
     const Lattice nodes{{cells.lo, cells.hi + Vec3i(1)}};
     std::vector<float> distance(nodes.count());
-    for_points(nodes.region, [&](const Vec3i& c) {
+    for_cells(nodes.region, [&](const Vec3i& c) {
         distance[static_cast<std::size_t>(nodes.index(c))] =
             static_cast<float>(signed_distance(node(c)));
     });
@@ -159,12 +149,11 @@ void SolidField::cut_block(int block) {
 
 void SolidField::cut_faces(int block, int axis, const std::vector<float>& distance,
                            const Lattice& nodes) {
-    Box3i faces = blocks_.cells(block);
-    if (faces.hi[axis] == domain_.cells[axis]) faces.hi[axis] += 1;
+    const Box3i faces = domain_.faces_of(blocks_.cells(block), axis);
     Vec3i u, v;
     u[(axis + 1) % 3] = 1;
     v[(axis + 2) % 3] = 1;
-    for_points(faces, [&](const Vec3i& f) {
+    for_cells(faces, [&](const Vec3i& f) {
         const auto phi = [&](const Vec3i& c) {
             return distance[static_cast<std::size_t>(nodes.index(c))];
         };
@@ -238,6 +227,14 @@ void SolidField::extrapolate(SparseField& scalar) const {
         auto& active = scalar.active[static_cast<std::size_t>(blocks_.find(c / blocks_.extent()))];
         if (!active && scalar.values.get(c) != 0) active = 1;
     }
+}
+
+double SolidField::sum_inside(const TileField<float>& scalar) const {
+    double sum = 0;
+    for (const auto* points : {&center_ghosts_.points(), &center_ghosts_.deep()}) {
+        for (const Vec3i& c : *points) sum += scalar.get(c);
+    }
+    return sum;
 }
 
 void SolidField::clear_inside(TileField<float>& scalar) const {

@@ -40,6 +40,8 @@ class SolidField {
     void extrapolate(FaceField& velocity) const;
     // The same for a scalar at cell centres, so that none is drawn out of a solid; zero deeper in.
     void extrapolate(SparseField& scalar) const;
+    // Sum over the cells whose centre is in a solid.
+    double sum_inside(const TileField<float>& scalar) const;
     // Sets a scalar to zero in cells whose centre is in a solid.
     void clear_inside(TileField<float>& scalar) const;
 

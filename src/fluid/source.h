@@ -40,8 +40,8 @@ class FluidSource {
     virtual ~FluidSource() = default;
 
     // The frame of that number. A stateless source gives any; a simulation computes all frames up
-    // to it, and throws Error{Usage} when it lies before the last one. Throws Error{Cancelled} with
-    // the state of the last whole frame kept.
+    // to it, and throws Error{Usage} when it lies before the last one. After Error{Cancelled} a
+    // simulation has stopped within a step: it goes on from a loaded state only.
     virtual Frame frame(int number, Job& job) = 0;
     // Of the frame given last.
     virtual FrameStatistics statistics() const = 0;
