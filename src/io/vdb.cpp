@@ -432,6 +432,9 @@ void write_vdb(const std::string& path, const Frame& frame, const VdbWriteOption
         const auto grid = to_grid(name, field, options, job);
         add_grid_metadata(name, frame, *grid);
         grids.push_back(grid);
+        job.progress(
+            0.5 * static_cast<double>(grids.size()) / static_cast<double>(frame.fields.size()),
+            "write");
     }
     AtomicFile file(path);
     try {
@@ -443,6 +446,7 @@ void write_vdb(const std::string& path, const Frame& frame, const VdbWriteOption
     }
     job.check();
     file.commit();
+    job.progress(1, "write");
 }
 
 }  // namespace gischt
