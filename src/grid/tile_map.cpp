@@ -61,8 +61,7 @@ TileMap::TileMap(std::vector<Vec3i> tiles, const Box3i& bounds, TileShape shape,
         }
     }
     std::ranges::sort(coord_, {}, morton);
-    const auto tail = std::ranges::unique(coord_);
-    coord_.erase(tail.begin(), tail.end());
+    coord_.erase(std::unique(coord_.begin(), coord_.end()), coord_.end());
     index_tiles();
     link_neighbours();
 }
