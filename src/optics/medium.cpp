@@ -87,7 +87,8 @@ void Medium::take(const MediumParams& params, double time) {
         const Vec3d extinction = params.extinction.at(time), albedo = params.albedo.at(time);
         cross_sections_ = {Vec3f(extinction * (Vec3d(1) - albedo)), Vec3f(extinction * albedo)};
     }
-    phase_ = make_phase(params.phase, params.g.at(time));
+    phase_ = make_phase(
+        {params.phase, params.g.at(time), params.g2, params.lobe_weight, params.droplet_diameter});
     multiple_scattering_ = params.multiple_scattering;
     density_scale_ = static_cast<float>(params.density_scale.at(time));
     strength_ = max_component(cross_sections_.extinction());
