@@ -120,6 +120,8 @@ struct BrickBuilder {
     SampleReader reader;
     std::vector<Vec3i> candidates{};
     std::vector<Survey> surveys{};
+    // Whose blocks are kept whatever is in them.
+    const BrickVolume* partner = options.like ? options.like : options.also;
 
     void build() {
         volume.background_ = reader.background;
@@ -144,17 +146,17 @@ struct BrickBuilder {
         Box3i all = Box3i::empty();
         for (int t = 0; t < map.size(); ++t) {
             const Box3i cells = map.cells_of(t);
-            if (!cells.is_empty()) all.extend(bricks_of(cells));
+            if (!cells.is_empty() && !options.like) all.extend(bricks_of(cells));
         }
-        if (options.also && options.also->size() > 0) all.extend(options.also->brick_bounds());
+        if (partner && partner->size() > 0) all.extend(partner->brick_bounds());
         if (all.is_empty()) return;
         make_pages(all);
         for (int t = 0; t < map.size(); ++t) {
             const Box3i cells = map.cells_of(t);
-            if (!cells.is_empty()) mark(bricks_of(cells));
+            if (!cells.is_empty() && !options.like) mark(bricks_of(cells));
         }
-        for (int b = 0; options.also && b < options.also->size(); ++b) {
-            const Vec3i c = options.also->coord(b);
+        for (int b = 0; partner && b < partner->size(); ++b) {
+            const Vec3i c = partner->coord(b);
             mark({c, c + Vec3i(1)});
         }
         collect();
@@ -247,8 +249,8 @@ struct BrickBuilder {
                     s.occupied |= 1u << b;
                 }
             }
-            const int other = options.also ? options.also->find(brick) : -1;
-            if (other >= 0) s.occupied |= options.also->occupied(other);
+            const int other = partner ? partner->find(brick) : -1;
+            if (other >= 0) s.occupied |= partner->occupied(other);
         });
     }
 
@@ -325,8 +327,8 @@ struct BrickBuilder {
     // Bounds are widened by the rounding of seven linear interpolations, below 1e-6 of the largest
     // value; 0 stays 0, as an interpolant of numbers from 0 on never gets below.
     void pack_blocks(int b, const Samples& samples) {
-        const int other = options.also ? options.also->find(volume.coord(b)) : -1;
-        unsigned occupied = other >= 0 ? options.also->occupied(other) : 0u;
+        const int other = partner ? partner->find(volume.coord(b)) : -1;
+        unsigned occupied = other >= 0 ? partner->occupied(other) : 0u;
         const Survey& s = surveys[static_cast<std::size_t>(b)];
         const float rounding = 1e-6f * std::max(std::abs(s.min), std::abs(s.max));
         BrickVolume::Block whole{std::numeric_limits<float>::max(), 0,

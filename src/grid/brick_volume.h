@@ -37,6 +37,8 @@ struct BrickOptions {
     // Blocks in which this volume (on the same lattice) has values are kept, even if the field has
     // only its background there. Null is allowed.
     const BrickVolume* also = nullptr;
+    // Exactly the bricks of this volume (on the same lattice) are stored, under the same indices.
+    const BrickVolume* like = nullptr;
 };
 
 // A packed, read-only copy of a field for rendering.

@@ -126,6 +126,26 @@ TEST(BrickVolume, BlocksBoundTheInterpolantAndHoldItsMean) {
     }
 }
 
+TEST(BrickVolume, StoresTheBricksOfAnother) {
+    Job job;
+    Field shape, color;
+    shape.component.emplace_back(TileMap::box(Vec3i(40)));
+    color.component.emplace_back(TileMap::box(Vec3i(64)));
+    shape.component[0].ref({3, 4, 5}) = 1;
+    shape.component[0].ref({30, 20, 38}) = 1;
+    color.component[0].ref({60, 60, 60}) = 7;  // where the other has nothing
+    color.component[0].ref({31, 20, 38}) = 2;
+    const BrickVolume one(shape, {}, job), two(color, {.like = &one}, job);
+    ASSERT_EQ(two.size(), one.size());
+    for (int b = 0; b < one.size(); ++b) {
+        EXPECT_EQ(two.coord(b), one.coord(b));
+        EXPECT_EQ(two.find(two.coord(b)), b);
+        EXPECT_EQ(two.occupied(b) & one.occupied(b), one.occupied(b));
+    }
+    EXPECT_EQ(two.at({31, 20, 38}), 2);
+    EXPECT_EQ(two.at({60, 60, 60}), 0);
+}
+
 TEST(BrickVolume, KeepsOnlyBricksThatDifferFromTheBackground) {
     Field f;
     f.component.emplace_back(TileMap::box({64, 64, 64}));

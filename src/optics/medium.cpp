@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/medium.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <limits>
-#include <string>
-#include <vector>
 
-#include "grid/resample.h"
+#include "optics/medium_pack.h"
 
 namespace gischt {
 namespace {
@@ -43,12 +38,15 @@ Medium::Medium(const Frame& frame, const MediumParams& params, double time, Job&
     const Transform* lattice = density ? &density->to_world : nullptr;
     const bool flame = emission_ == EmissionKind::Flame;
     if (is_emissive()) {
-        glow_ = pack(frame, params.emission_field.value_or(flame ? "flame" : "temperature"),
-                     {.non_negative = flame}, lattice, job);
+        glow_ = pack_scalar(frame, params.emission_field.value_or(flame ? "flame" : "temperature"),
+                            {.non_negative = flame}, lattice, job);
         glow_elsewhere_ = glow_.background();
     }
-    density_ = pack(frame, params.density_field,
-                    {.non_negative = true, .also = flame ? &glow_ : nullptr}, lattice, job);
+    density_ = pack_scalar(frame, params.density_field,
+                           {.non_negative = true, .also = flame ? &glow_ : nullptr}, lattice, job);
+    if (params.color_field) {
+        dyed_ = pack_dyed_density(frame, params.density_field, *params.color_field, density_, job);
+    }
     majorant_ = strength_ * density_scale_ * density_.max();
     if (density_.size() > 0) cell_size_ = density_.cell_size();
     if (is_emissive()) bound_emission();
@@ -56,6 +54,9 @@ Medium::Medium(const Frame& frame, const MediumParams& params, double time, Job&
 
 Medium::Medium(const Region& region, const MediumParams& params, double time, double temperature) {
     take(params, time);
+    if (params.color_field) {
+        throw Error(ErrorKind::Usage, "medium", "a color_field needs a frame", "take albedo");
+    }
     if (!(min_component(region.size) > 0)) {
         throw Error(ErrorKind::Usage, "medium", "the region has no volume",
                     "give it a positive size");
@@ -110,31 +111,6 @@ void Medium::take(const MediumParams& params, double time) {
     if (is_emissive()) blackbody_ = std::make_shared<const BlackbodyTable>();
 }
 
-// Packs a field of the frame, on another lattice if that is not its own.
-BrickVolume Medium::pack(const Frame& frame, const std::string& name, const BrickOptions& options,
-                         const Transform* lattice, Job& job) const {
-    const Field* field = frame.find(name);
-    if (!field) {
-        std::vector<std::string> names;
-        for (const auto& [key, value] : frame.fields) names.push_back(key);
-        throw Error(ErrorKind::Input, "medium", fmt::format("the frame has no field '{}'", name),
-                    names.empty() ? "it has no fields at all"
-                                  : fmt::format("fields: {}", fmt::join(names, ", ")));
-    }
-    if (field->is_vector()) {
-        throw Error(ErrorKind::Input, "medium", fmt::format("field '{}' is a vector", name),
-                    "a medium needs a scalar");
-    }
-    const BrickVolume volume = !lattice || field->to_world == *lattice
-                                   ? BrickVolume(*field, options, job)
-                                   : BrickVolume(resample(*field, 0, *lattice, job), options, job);
-    if (volume.non_finite() > 0) {
-        job.warn(fmt::format("field '{}': {} values that are not finite count as {:g}", name,
-                             volume.non_finite(), volume.background()));
-    }
-    return volume;
-}
-
 Box3d Medium::bounds() const {
     if (shape_ == Shape::Bricks) return density_.world_bounds();
     if (layer_) return layer_->bounds();
@@ -167,6 +143,14 @@ float Medium::density(const Vec3d& point) const {
 MediumPoint Medium::at(const Vec3d& point) const {
     const float d = density(point);
     MediumPoint p{d * cross_sections_.absorption, d * cross_sections_.scattering, {}};
+    if (has_color() && d > 0) {
+        const Vec3f color =
+            (density_scale_ / d) *
+            Vec3f(dyed_[0].sample(point), dyed_[1].sample(point), dyed_[2].sample(point));
+        const Vec3f extinction = p.extinction();
+        p.scattering = p.scattering * min(color, Vec3f(1));
+        p.absorption = extinction - p.scattering;
+    }
     if (is_emissive()) {
         p.emission = glow(d, shape_ == Shape::Bricks ? glow_.sample(point) : glow_elsewhere_);
     }

@@ -63,12 +63,13 @@ class SegmentWalk;
 
 // A participating medium at one moment: extinction, scattering, emission and a phase function as
 // functions of the place. The coefficients are a scalar density(x) >= 0 times constant cross
-// sections. Immutable, safe to use from several threads.
+// sections; where has_color(), a colour in [0,1] multiplies the scattering and what it takes is
+// absorbed, so that the extinction stays. Immutable, safe to use from several threads.
 class Medium {
   public:
     // The density field of a frame, and its temperature or flame where that glows. Values below
-    // zero and those that are not finite count as 0; the latter are reported to the job. Throws
-    // Error{Input} when a field is missing, naming those there are.
+    // zero and those that are not finite count as 0, colours above one as 1; the last two are
+    // reported to the job. Throws Error{Input} when a field is missing, naming those there are.
     Medium(const Frame& frame, const MediumParams& params, double time, Job& job);
     // Density 1 inside a region, nothing outside. Emission by blackbody takes `temperature` in K.
     // Throws Error{Usage} when the region has no volume, or no end but a glow.
@@ -80,6 +81,7 @@ class Medium {
     const PhaseFunction& phase() const { return phase_; }
     const MultipleScattering& multiple_scattering() const { return multiple_scattering_; }
     bool is_emissive() const { return emission_ != EmissionKind::None; }
+    bool has_color() const { return !dyed_.empty(); }
     // Extinction of the strongest channel at density 1, 1/m; segments count in it.
     float strength() const { return strength_; }
     // Largest extinction of the strongest channel anywhere, 1/m.
@@ -129,6 +131,15 @@ class Medium {
     Vec3f emission_at(const MediumSegment& segment, float t, float density) const {
         return is_emissive() ? glow(density, glow_at(segment, t)) : Vec3f{};
     }
+    // Colour, by which the cross section of scattering is multiplied; white where there is none.
+    Vec3f color_at(const MediumSegment& segment, float t, float density) const {
+        if (!has_color() || !(density > 0)) return Vec3f(1);
+        const Vec3f local = segment.entry + t * segment.step;
+        const Vec3f dyed(dyed_[0].at_local(segment.brick, local),
+                         dyed_[1].at_local(segment.brick, local),
+                         dyed_[2].at_local(segment.brick, local));
+        return min((density_scale_ / density) * dyed, Vec3f(1));
+    }
     // Optical depth of the strongest channel, in which segments count, along a ray for t in
     // [t0, t1]; the others are in the ratio of their extinction to strength(). Only for media
     // without a grid: exact, over a sphere within 1e-7. May be infinite.
@@ -141,8 +152,6 @@ class Medium {
 
     Interval inside(const Ray& ray) const;
     void take(const MediumParams& params, double time);
-    BrickVolume pack(const Frame& frame, const std::string& name, const BrickOptions& options,
-                     const Transform* lattice, Job& job) const;
     void bound_emission();
     float emission_bound(float density, float least, float most) const;
     Vec3f glow(float density, float value) const;
@@ -153,7 +162,8 @@ class Medium {
 
     Shape shape_ = Shape::Bricks;
     BrickVolume density_;
-    BrickVolume glow_;  // temperature or flame, on the lattice of density
+    BrickVolume glow_;               // temperature or flame, on the lattice of density
+    std::vector<BrickVolume> dyed_;  // none, or density times colour with the bricks of density
     // Bounds of the emission by brick: eight of its blocks and one of the whole.
     static constexpr int bounds_per_brick = BrickVolume::brick_blocks + 1;
     std::vector<float> emission_bounds_;

@@ -56,6 +56,10 @@ const Table<MediumParams>& medium_table() {
                           "'extinction' and 'albedo'",
                   .min = 0,
                   .broadcast = true})
+            .add("color_field", &MediumParams::color_field,
+                 {.help = "Field of the frame that multiplies the albedo from place to place: a "
+                          "vector, or three scalars of that name with _r, _g, _b at the end; by "
+                          "default the fluid has one colour"})
             .choice("phase", &MediumParams::phase,
                     {{"isotropic", PhaseKind::Isotropic, "equal in all directions"},
                      {"henyey_greenstein", PhaseKind::HenyeyGreenstein,

@@ -31,6 +31,7 @@ struct MediumParams {
     Keyed<Vec3d> extinction{Vec3d(10.0)};
     Keyed<Vec3d> albedo{Vec3d(0.9)};
     std::optional<Keyed<Vec3d>> absorption, scattering;
+    std::optional<std::string> color_field;  // vector, or three scalars NAME_r, NAME_g, NAME_b
 
     PhaseKind phase = PhaseKind::HenyeyGreenstein;
     Keyed<double> g{0.0};

@@ -227,6 +227,54 @@ TEST(Medium, LooksUpSinglePlacesLikeMany) {
     }
 }
 
+// Colours dye what is scattered; what they take is absorbed.
+TEST(Medium, TakesItsColorFromPlaceToPlace) {
+    Job job;
+    std::string warning;
+    job.on_message = [&](Job::Level, std::string_view text) { warning = text; };
+    Frame frame = frame_of("density", field_of({48, 48, 48}, bump_lattice, bump));
+    const Transform coarse = Transform::scale_translate(0.1, Vec3d(-1.5));
+    const auto red = [](const Vec3d& p) { return 0.5 + 0.3 * p.x; };
+    frame.fields.emplace("color_r", field_of({30, 30, 30}, coarse, red));
+    frame.fields.emplace("color_g", field_of({30, 30, 30}, coarse, [](const Vec3d&) { return 0; }));
+    frame.fields.emplace("color_b", field_of({30, 30, 30}, coarse, [](const Vec3d&) { return 2; }));
+    MediumParams params = grey(1, 4);
+    EXPECT_FALSE(Medium(frame, params, 0, job).has_color());
+    params.color_field = "color";
+    const Medium medium(frame, params, 0, job);
+    ASSERT_TRUE(medium.has_color());
+    EXPECT_NE(warning.find("colours above 1 count as 1"), std::string::npos);
+    const Vec3d point(0.3, -0.2, 0.1);
+    const MediumPoint at = medium.at(point);
+    const float d = medium.density(point);
+    EXPECT_NEAR(at.scattering.x, 4 * d * red(point), 2e-3);
+    EXPECT_EQ(at.scattering.y, 0);
+    EXPECT_NEAR(at.scattering.z, 4 * d, 1e-4);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(at.extinction()[c], 5 * d, 1e-5);
+    const Ray ray{{-2, -0.2, 0.1}, {1, 0, 0}};
+    SegmentWalk walk = medium.segments(ray);
+    for (MediumSegment s; walk.next(s);) {
+        const auto t = static_cast<float>(0.5 * (s.t1 - s.t0));
+        const float density = medium.density_at(s, t);
+        if (density == 0) continue;
+        const Vec3f color = medium.color_at(s, t, density);
+        // Where there is next to nothing its 16 bits show.
+        const double coarse_bits = density > 1e-3f ? 0 : 0.5;
+        EXPECT_NEAR(color.x, red(ray.at(0.5 * (s.t0 + s.t1))), 6e-3 + coarse_bits);
+        EXPECT_NEAR(color.z, 1, 1e-3 + coarse_bits);
+    }
+    // A vector field does the same; a scalar, or nothing, will not.
+    Field vector = field_of({30, 30, 30}, coarse, red);
+    vector.component.resize(3, vector.component[0]);
+    frame.fields.emplace("dye", vector);
+    params.color_field = "dye";
+    EXPECT_NEAR(Medium(frame, params, 0, job).at(point).scattering.y, 4 * d * red(point), 2e-3);
+    for (const char* name : {"color_r", "paint"}) {
+        params.color_field = name;
+        EXPECT_THROW(Medium(frame, params, 0, job), Error);
+    }
+}
+
 TEST(Medium, FillsAllOfSpace) {
     const Medium fog(Region::everywhere(), grey(0.5, 1.5), 0);
     EXPECT_FALSE(fog.is_bounded());

@@ -14,6 +14,7 @@ void check_medium(const PlacedMedium& m, const Fail& fail) {
     if (m.medium.density_field != standard.density_field) {
         fail("density_field", "belongs to a fluid", "a [[medium]] has density 1");
     }
+    if (m.medium.color_field) fail("color_field", "belongs to a fluid");
     if (m.medium.emission_field) fail("emission_field", "belongs to a fluid");
     if (m.medium.temperature_range) fail("temperature_range", "belongs to a fluid");
     if (m.medium.emission == EmissionKind::Flame) {

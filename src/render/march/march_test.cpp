@@ -44,6 +44,11 @@ MediumPtr cloud(const MediumParams& params, const Transform& map = {}) {
         const double lump = 0.9 - length(p) + 0.5 * static_cast<double>(gradient_noise(2.5 * p, 7));
         f.component[0].ref(c) = static_cast<float>(std::clamp(2 * lump, 0.0, 1.0));
     }
+    // A colour, for who asks for it: half of the red, all of the rest.
+    Field dye = f;
+    dye.component.resize(3, dye.component[0]);
+    for (std::size_t a = 0; a < 3; ++a) std::ranges::fill(dye.component[a].values(), a ? 1 : 0.5f);
+    frame.fields.emplace("dye", dye);
     Job job;
     return std::make_shared<const Medium>(frame, params, 0, job);
 }
@@ -298,6 +303,19 @@ TEST(March, TwoMediaInOnePlaceAddUp) {
     one.lights = two.lights = {sun({1, -1, 1}), sky({0.2f, 0.2f, 0.2f})};
     const Image a = render(one).image, b = render(two).image;
     EXPECT_LT(rms(a, b), 3e-3 * mean(a));
+}
+
+// A colour is an albedo: half the scattering, the other half being absorbed.
+TEST(March, ColorsTheScatteredLight) {
+    MediumParams params = coefficients({}, Vec3d(6));
+    params.color_field = "dye";
+    View dyed = view_of({cloud(params)}, 12),
+         mixed = view_of({cloud(coefficients({3, 0, 0}, {3, 6, 6}))}, 12);
+    dyed.lights = mixed.lights = {sun({1, -1, 1}), sky({0.2f, 0.2f, 0.2f})};
+    const Image a = render(dyed).image, b = render(mixed).image;
+    for (const char* channel : {"R", "G", "B"}) {
+        EXPECT_NEAR(mean(a, channel) / mean(b, channel), 1, 1e-4) << channel;
+    }
 }
 
 TEST(March, OctavesOnlyAddLight) {

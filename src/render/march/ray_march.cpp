@@ -171,6 +171,12 @@ void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float le
         }
         medium.densities(w.segment, {local.data(), t.size()}, w.density.data());
         lookups += static_cast<std::int64_t>(t.size());
+        if (medium.has_color()) {
+            for (std::size_t i = 0; i < t.size(); ++i) {
+                w.scattering[i] = scene_.media[w.medium].scattering *
+                                  medium.color_at(w.segment, local[i], w.density[i]);
+            }
+        }
         if (medium.is_emissive()) {
             medium.emissions(w.segment, {local.data(), t.size()}, w.density.data(),
                              w.emission.data());
@@ -186,7 +192,8 @@ void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float le
             if (m.medium->is_emissive()) source += w.emission[i];
             if (density == 0) continue;
             extinction += density * m.extinction;
-            source += density * m.scattering * in_scattered(w.medium, ray, point, sampler);
+            const Vec3f& scattering = m.medium->has_color() ? w.scattering[i] : m.scattering;
+            source += density * scattering * in_scattered(w.medium, ray, point, sampler);
         }
         if (extinction == Vec3f{} && source == Vec3f{}) continue;
         const Vec3f transmittance = scene_.is_grey ? Vec3f(fast_exp(-length * extinction.x))

@@ -50,6 +50,7 @@ class RayMarcher {
         bool is_active = false;
         std::array<float, batch> density{};
         std::array<Vec3f, batch> emission{};
+        std::array<Vec3f, batch> scattering{};  // where the medium has colours
 
         // After the last segment there is one at infinity.
         void advance() {
