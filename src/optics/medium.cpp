@@ -77,7 +77,7 @@ Medium::Medium(const Region& region, const MediumParams& params, double time, do
     glow_elsewhere_ = static_cast<float>(temperature);
     majorant_ = strength_ * density_scale_;
     if (is_emissive()) {
-        emission_majorant_ = emission_bound(density_scale_, glow_elsewhere_, glow_elsewhere_);
+        emission_majorant_ = bound_of_glow(density_scale_, glow_elsewhere_, glow_elsewhere_);
     }
 }
 
@@ -169,7 +169,7 @@ Vec3f Medium::glow(float density, float value) const {
 
 // Bound of glow() for densities up to `density` and values in [least, most], between which the
 // temperature is linear and the radiance grows with it.
-float Medium::emission_bound(float density, float least, float most) const {
+float Medium::bound_of_glow(float density, float least, float most) const {
     const float cold = max_component(glow(density, least));
     float bound = std::max(cold, max_component(glow(density, most)));
     if (emission_ == EmissionKind::Flame && least > 0) bound = std::max(bound, cold / least * most);
@@ -187,12 +187,27 @@ void Medium::bound_emission() {
             const BrickVolume::Block value =
                 other < 0 ? BrickVolume::Block{none, none, none} : glow_.block(other, b);
             bounds[b] =
-                emission_bound(density_scale_ * density_.block(brick, b).max, value.min, value.max);
+                bound_of_glow(density_scale_ * density_.block(brick, b).max, value.min, value.max);
             float& whole = bounds[BrickVolume::brick_blocks];
             whole = std::max(whole, bounds[b]);
             emission_majorant_ = std::max(emission_majorant_, bounds[b]);
         }
     }
+}
+
+Vec3f Medium::mean_emission(int brick, int block) const {
+    const int other = glow_.find(density_.coord(brick));
+    const Vec3f first(static_cast<float>(4 * (block & 1)), static_cast<float>(4 * (block >> 1 & 1)),
+                      static_cast<float>(4 * (block >> 2)));
+    Vec3f sum;
+    for (int i = 0; i < 64; ++i) {
+        const Vec3f cell(static_cast<float>(i & 3), static_cast<float>(i >> 2 & 3),
+                         static_cast<float>(i >> 4));
+        const Vec3f local = first + cell + Vec3f(0.5f);
+        const float value = other < 0 ? glow_elsewhere_ : glow_.at_local(other, local);
+        sum += glow(density_scale_ * density_.at_local(brick, local), value);
+    }
+    return sum * (1.0f / 64);
 }
 
 SegmentWalk Medium::segments(const Ray& ray, BrickGrain grain) const {
@@ -273,9 +288,8 @@ bool SegmentWalk::next(MediumSegment& segment) {
     segment.step = bricks_->step();
     if (medium_->is_emissive()) {
         segment.glow_brick = medium_->glow_.find(run.coord);
-        const int bound = run.block < 0 ? BrickVolume::brick_blocks : run.block;
-        segment.emission_max = medium_->emission_bounds_[static_cast<std::size_t>(
-            run.brick * Medium::bounds_per_brick + bound)];
+        segment.emission_max = medium_->emission_bound(
+            run.brick, run.block < 0 ? BrickVolume::brick_blocks : run.block);
     }
     return true;
 }

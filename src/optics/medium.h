@@ -106,6 +106,18 @@ class Medium {
     Lattice lattice() const;
     bool has_lattice() const { return shape_ != Shape::Everywhere && shape_ != Shape::Layered; }
 
+    // The bricks of the density; null for media without a grid.
+    const BrickVolume* bricks() const { return shape_ == Shape::Bricks ? &density_ : nullptr; }
+    // Of a block of a brick: bound of the emission of the strongest channel, and mean over its 64
+    // cells' centres, W/(m^3 sr).
+    float emission_bound(int brick, int block) const {
+        return emission_bounds_[static_cast<std::size_t>(brick * bounds_per_brick + block)];
+    }
+    Vec3f mean_emission(int brick, int block) const;
+    // Of a homogeneous medium: from [-1,1]^3, or from the unit ball, to metres.
+    const Transform& region_to_world() const { return to_world_; }
+    bool is_ellipsoid() const { return shape_ == Shape::Ellipsoid; }
+
     // At a point in metres, for probes; along rays use segments.
     float density(const Vec3d& point) const;
     MediumPoint at(const Vec3d& point) const;
@@ -153,7 +165,7 @@ class Medium {
     Interval inside(const Ray& ray) const;
     void take(const MediumParams& params, double time);
     void bound_emission();
-    float emission_bound(float density, float least, float most) const;
+    float bound_of_glow(float density, float least, float most) const;
     Vec3f glow(float density, float value) const;
     float glow_at(const MediumSegment& s, float t) const {
         return s.glow_brick < 0 ? glow_elsewhere_
