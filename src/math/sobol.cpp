@@ -12,14 +12,15 @@ std::uint32_t reverse_bits(std::uint32_t x) {
     return __builtin_bswap32(x);
 }
 
-// A hash in which bit i of the result depends on bits 0..i only (Laine & Karras 2011, constants of
-// Burley 2020).
+// A hash in which bit i of the result depends on bits 0..i only (Laine & Karras 2011), with the
+// rounds and constants of Vegdahl 2021, "Building a better LK hash": those of Burley 2020 leave
+// padded dimensions visibly correlated for some seeds.
 static std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
+    x ^= x * 0x3d20adeau;
     x += seed;
-    x ^= x * 0x6c50b47cu;
-    x ^= x * 0xb82f1e52u;
-    x ^= x * 0xc7afe638u;
-    x ^= x * 0x8d22f6e6u;
+    x *= seed >> 16 | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
     return x;
 }
 
