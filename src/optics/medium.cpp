@@ -213,21 +213,9 @@ void Medium::densities(const MediumSegment& segment, std::span<const float> t, f
     for (std::size_t i = 0; i < t.size(); ++i) out[i] *= density_scale_;
 }
 
-float Medium::density_at(const MediumSegment& segment, float t) const {
-    const Bricks* b = std::get_if<Bricks>(&kind_);
-    if (!b) return density_scale_;
-    return density_scale_ * b->density.at_local(segment.brick, segment.entry + t * segment.step);
-}
-
-Vec3f Medium::emission_at(const MediumSegment& segment, float t, float density) const {
-    Vec3f out;
-    emissions(segment, {&t, 1}, &density, &out);
-    return out;
-}
-
 int Medium::cell_crossings_of(const MediumSegment& segment, float begin, float end,
                               std::span<float> out) const {
-    if (!std::holds_alternative<Bricks>(kind_)) return 0;
+    if (segment.brick < 0) return 0;
     const int n =
         cell_crossings(segment.entry + begin * segment.step, segment.step, end - begin, out);
     for (int i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] += begin;

@@ -110,9 +110,6 @@ class Medium {
     SegmentWalk segments(const Ray& ray, BrickGrain grain = BrickGrain::Blocks) const;
     // Density at anchor + t[i], which must lie in the segment.
     void densities(const MediumSegment& segment, std::span<const float> t, float* out) const;
-    // One of these.
-    float density_at(const MediumSegment& segment, float t) const;
-    Vec3f emission_at(const MediumSegment& segment, float t, float density) const;
     // The t in ]begin, end[ of a segment at which the density passes from one interpolation cell to
     // the next; between them it is a cubic polynomial of t. `out` holds most_cell_crossings.
     int cell_crossings_of(const MediumSegment& segment, float begin, float end,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/error.h"
+
 namespace gischt {
 
 static constexpr double never = std::numeric_limits<double>::infinity();
@@ -11,43 +13,46 @@ static constexpr double never = std::numeric_limits<double>::infinity();
 MediaWalk::MediaWalk(std::span<const Medium* const> media, const Ray& ray, BrickGrain grain)
     : media_(media), t_(ray.t_min), t_end_(ray.t_max) {
     GISCHT_ASSERT(media.size() <= most_media);
-    for (std::size_t i = 0; i < media.size(); ++i) {
-        walk_[i].emplace(media[i]->segments(ray, grain));
-        if (media.size() > 1) advance(i);
+    if (media.size() == 1) {
+        only_.emplace(*media[0], ray, grain);
+        one_.medium = media[0];
+        return;
+    }
+    walkers_.reserve(media.size());
+    active_.resize(media.size());
+    for (const Medium* m : media) {
+        walkers_.push_back({m->segments(ray, grain), {}});
+        advance(walkers_.back());
     }
 }
 
-void MediaWalk::advance(std::size_t i) {
-    if (!walk_[i]->next(segment_[i])) segment_[i].t0 = segment_[i].t1 = never;
+void MediaWalk::advance(Walker& w) {
+    if (!w.walk.next(w.segment)) w.segment.t0 = w.segment.t1 = never;
 }
 
-// One medium, the common case: its segments are the runs.
+// The common case: the medium's segments are the runs.
 bool MediaWalk::next_of_one(MediaRun& run) {
-    ActiveMedium& one = active_[0];
-    if (!walk_[0]->next(one.segment)) return false;
-    one.medium = media_[0];
-    run = {one.segment.t0,   one.segment.t1,  one.segment.min,
-           one.segment.mean, one.segment.max, {active_.data(), 1}};
+    if (!only_->next(one_.segment)) return false;
+    const MediumSegment& s = one_.segment;
+    run = {s.t0, s.t1, s.min, s.mean, s.max, s.emission_max, {&one_, 1}};
     return true;
 }
 
 bool MediaWalk::next(MediaRun& run) {
-    const std::size_t n = media_.size();
-    if (n == 0) return false;
-    if (n == 1) return next_of_one(run);
+    if (only_) return next_of_one(run);
     for (;;) {
-        // The run ends where the first segment ends or the next one begins.
+        // The run begins where the first medium does, and ends where the set of media changes.
         double begin = never;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (segment_[i].t1 <= t_) advance(i);
-            begin = std::min(begin, std::max(t_, segment_[i].t0));
+        for (Walker& w : walkers_) {
+            while (w.segment.t1 <= t_ && w.segment.t0 < never) advance(w);
+            begin = std::min(begin, std::max(t_, w.segment.t0));
         }
-        if (!(begin < t_end_) || begin == never) return false;
+        if (!(begin < t_end_)) return false;
         double end = t_end_;
         std::size_t count = 0;
-        run.min = run.mean = run.max = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const MediumSegment& s = segment_[i];
+        run = {};
+        for (std::size_t i = 0; i < walkers_.size(); ++i) {
+            const MediumSegment& s = walkers_[i].segment;
             if (s.t0 > begin) {
                 end = std::min(end, s.t0);
                 continue;
@@ -57,6 +62,7 @@ bool MediaWalk::next(MediaRun& run) {
             run.min += s.min;
             run.mean += s.mean;
             run.max += s.max;
+            run.emission_max += s.emission_max;
         }
         t_ = end;
         if (!(begin < end)) continue;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "optics/medium.h"
 
@@ -30,6 +30,7 @@ struct ActiveMedium {
 struct MediaRun {
     double t0 = 0, t1 = 0;
     float min = 0, mean = 0, max = 0;
+    float emission_max = 0;  // bound of a L_e of the strongest channel, W/(m^3 sr)
     std::span<const ActiveMedium> active;
 };
 
@@ -46,14 +47,19 @@ class MediaWalk {
     bool next(MediaRun& run);
 
   private:
+    struct Walker {
+        SegmentWalk walk;
+        MediumSegment segment;
+    };
     bool next_of_one(MediaRun& run);
-    void advance(std::size_t i);
+    static void advance(Walker& walker);
 
     std::span<const Medium* const> media_;
     double t_, t_end_;
-    std::array<std::optional<SegmentWalk>, most_media> walk_;
-    std::array<MediumSegment, most_media> segment_;
-    std::array<ActiveMedium, most_media> active_;
+    std::optional<SegmentWalk> only_;  // of a single medium
+    ActiveMedium one_;
+    std::vector<Walker> walkers_;  // of several
+    std::vector<ActiveMedium> active_;
 };
 
 }  // namespace gischt

@@ -5,13 +5,23 @@
 #include <cmath>
 
 #include "image/color.h"
-#include "math/fast_math.h"
+#include "render/progressive.h"
 
 namespace gischt {
 namespace {
 
-// Dimensions of a sample; the filter takes 0.
-enum : std::uint32_t { DimensionDistance = 1, DimensionSplit = 2, DimensionTurn = 3 };
+// Dimensions of a sample; from there on the streams.
+enum : std::uint32_t {
+    DimensionDistance = SampleDimension::Free,
+    DimensionSplit,
+    DimensionHero,
+    DimensionTurn,  // two per split, the first splits only
+    DimensionStream = 1000
+};
+
+RandomStream stream_of(const PixelSampler& sampler, std::uint32_t branch) {
+    return {sampler.stream_key(DimensionStream + branch)};
+}
 
 }  // namespace
 
@@ -21,13 +31,13 @@ PathTracer::PathTracer(const PathScene& scene, int depth) : scene_(scene), depth
     tracker_.is_emissive = scene.is_emissive;
 }
 
-TracedRay PathTracer::operator()(const Ray& camera_ray, const PathSampler& sampler) {
+TracedRay PathTracer::operator()(const Ray& camera_ray, const PixelSampler& sampler) {
     ++rays_;
     TracedRay result;
     Ray ray = camera_ray;
     const auto hit = scene_.view.surfaces.intersect(ray);
     if (hit) ray.t_max = hit->t;
-    hero_ = static_cast<int>((sampler.key + sampler.sample) % 3);
+    hero_ = scene_.is_grey ? 0 : static_cast<int>(3 * sampler.one(DimensionHero));
     if (scene_.params.camera == CameraSegment::Tracking) {
         see_by_tracking(ray, hit, sampler, result);
         return result;
@@ -41,7 +51,7 @@ TracedRay PathTracer::operator()(const Ray& camera_ray, const PathSampler& sampl
         }
     }
     float alpha = 0;
-    RandomStream random = sampler.stream(1);
+    RandomStream random = stream_of(sampler, 1);
     const float clear = luminance(through);
     if (clear > 1e-9f) result.radiance += through * seen_behind(ray, hit, random, alpha);
     if (hit) {
@@ -66,14 +76,14 @@ Vec3f PathTracer::seen_behind(const Ray& ray, const std::optional<SurfaceHit>& h
 
 // The integral over the camera ray of transmittance times scattering times what arrives: direct
 // light at all points, the rest from some of them.
-void PathTracer::see_through_profile(const Ray& ray, const PathSampler& sampler,
+void PathTracer::see_through_profile(const Ray& ray, const PixelSampler& sampler,
                                      TracedRay& result) {
     const Vec2f u = sampler.two(DimensionDistance);
     if (scene_.is_emissive) result.radiance += profile_.emission(u.y, tracker_.lookups);
     points_.clear();
     if (depth_ > 0) profile_.points(scene_.params.points, u.x, u.y, points_, tracker_.lookups);
     if (points_.empty()) return;
-    RandomStream random = sampler.stream(0);
+    RandomStream random = stream_of(sampler, 0);
     const auto vertex_at = [&](const ProfilePoint& p) {
         Vertex v;
         v.point = ray.at(p.t);
@@ -96,7 +106,7 @@ void PathTracer::see_through_profile(const Ray& ray, const PathSampler& sampler,
         const float at = (static_cast<float>(k) + pick.x) * n / static_cast<float>(splits);
         Vertex v = vertex_at(points_[std::min(static_cast<std::size_t>(at), points_.size() - 1)]);
         v.weight.weight *= n / static_cast<float>(splits);
-        random = sampler.stream(2 + static_cast<std::uint64_t>(k));
+        random = stream_of(sampler, 2 + static_cast<std::uint32_t>(k));
         random.lead(sampler.two(DimensionTurn + static_cast<std::uint32_t>(2 * k)),
                     sampler.two(DimensionTurn + static_cast<std::uint32_t>(2 * k + 1)));
         result.radiance += follow(v, random);
@@ -105,8 +115,8 @@ void PathTracer::see_through_profile(const Ray& ray, const PathSampler& sampler,
 
 // The same by one random distance; noisier, and the way of a plain path tracer.
 void PathTracer::see_by_tracking(const Ray& ray, const std::optional<SurfaceHit>& hit,
-                                 const PathSampler& sampler, TracedRay& result) {
-    RandomStream random = sampler.stream(0);
+                                 const PixelSampler& sampler, TracedRay& result) {
+    RandomStream random = stream_of(sampler, 0);
     Vertex v;
     Collision end;
     result.alpha = 1;

@@ -4,24 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "base/random.h"
-#include "math/sobol.h"
+#include "math/pixel_sampler.h"
 #include "render/path/path_scene.h"
 #include "render/path/ray_profile.h"
 
 namespace gischt {
-
-// The random numbers of one sample of one pixel: stratified for the first dimensions, a stream for
-// the unbounded rest.
-struct PathSampler {
-    std::uint64_t key = 0;     // of seed, frame and pixel
-    std::uint32_t sample = 0;  // index in the pixel
-
-    Vec2f two(std::uint32_t dimension) const {
-        return sobol_2d(sample, random_bits(key, dimension));
-    }
-    RandomStream stream(std::uint64_t branch) const { return {random_key(key, sample, branch)}; }
-};
 
 // What a camera ray sees.
 struct TracedRay {
@@ -35,7 +22,7 @@ class PathTracer {
   public:
     PathTracer(const PathScene& scene, int depth);
 
-    TracedRay operator()(const Ray& ray, const PathSampler& sampler);
+    TracedRay operator()(const Ray& ray, const PixelSampler& sampler);
 
     std::int64_t rays() const { return rays_; }
     std::int64_t lookups() const { return tracker_.lookups; }
@@ -56,9 +43,9 @@ class PathTracer {
     // Where a path meets a surface.
     struct Bounce;
 
-    void see_through_profile(const Ray& ray, const PathSampler& sampler, TracedRay& result);
+    void see_through_profile(const Ray& ray, const PixelSampler& sampler, TracedRay& result);
     void see_by_tracking(const Ray& ray, const std::optional<SurfaceHit>& hit,
-                         const PathSampler& sampler, TracedRay& result);
+                         const PixelSampler& sampler, TracedRay& result);
     Vec3f seen_behind(const Ray& ray, const std::optional<SurfaceHit>& hit, RandomStream& random,
                       float& alpha);
 

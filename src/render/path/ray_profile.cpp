@@ -50,7 +50,8 @@ void RayProfile::trace(std::span<const Medium* const> media, const Ray& ray, boo
 
 // The pieces of a run lie between the cell walls of all its media.
 void RayProfile::add_run(const MediaRun& run, std::int64_t& lookups) {
-    const auto length = static_cast<float>(run.t1 - run.t0);
+    // In place of infinity, which must not meet a 0.
+    const float length = std::min(static_cast<float>(run.t1 - run.t0), 1e30f);
     bool is_plain = true;
     edges_.clear();
     for (const ActiveMedium& a : run.active) {
@@ -68,11 +69,7 @@ void RayProfile::add_run(const MediaRun& run, std::int64_t& lookups) {
                                edges_.end());
         }
     }
-    if (is_plain && run.max == 0 &&
-        std::none_of(run.active.begin(), run.active.end(),
-                     [](const ActiveMedium& a) { return a.medium->is_emissive(); })) {
-        return;
-    }
+    if (is_plain && run.max == 0 && run.emission_max == 0) return;
     edges_.push_back(length);
 
     const auto run_index = static_cast<std::uint32_t>(runs_.size());
@@ -210,7 +207,7 @@ Vec3f RayProfile::emission(float u, std::int64_t& lookups) const {
             const auto begin = static_cast<float>(p.t0 - a.segment.anchor);
             depth += partial_integral(a, begin, s) * a.medium->cross_sections().extinction();
             lookups += 2;
-            if (!a.medium->is_emissive()) continue;
+            if (a.segment.emission_max == 0) continue;
             glow += a.medium->emission_at(a.segment, begin + s,
                                           a.medium->density_at(a.segment, begin + s));
             lookups += 2;

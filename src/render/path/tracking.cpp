@@ -16,20 +16,16 @@ float exponential(float u) {
     return -fast_log(1 - u);
 }
 
-// A stretch with emission but next to no density still needs tentative collisions to see it.
+// A stretch that glows with next to no density still needs tentative collisions to see it.
 float with_floor(const MediaRun& run, bool is_emissive) {
-    if (!is_emissive) return run.max;
-    const auto length = static_cast<float>(run.t1 - run.t0);
-    for (const ActiveMedium& a : run.active) {
-        if (a.medium->is_emissive()) return std::max(run.max, 1 / length);
-    }
-    return run.max;
+    if (!is_emissive || run.emission_max == 0) return run.max;
+    return std::max(run.max, 1 / static_cast<float>(run.t1 - run.t0));
 }
 
 Vec3f emission_of(const MediaRun& run, double t) {
     Vec3f sum;
     for (const ActiveMedium& a : run.active) {
-        if (!a.medium->is_emissive()) continue;
+        if (a.segment.emission_max == 0) continue;
         const auto at = static_cast<float>(t - a.segment.anchor);
         sum += a.medium->emission_at(a.segment, at, a.medium->density_at(a.segment, at));
     }
@@ -53,12 +49,9 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
     const float at = u * majorant;
     if (is_grey && run.active.size() == 1) {
         const ActiveMedium& a = run.active[0];
-        if (at >= run.min || a.medium->is_emissive()) {
+        if (at >= run.min) {
             ++lookups;
-            end.density = a.density(t);
-            if (at >= end.density * a.medium->strength()) return false;
-        } else {
-            end.density = -1;  // not looked up
+            if (at >= a.density(t) * a.medium->strength()) return false;
         }
         end.t = t;
         end.medium = a.index;
@@ -75,7 +68,7 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
         below += extinction[hero];
         if (!is_real && at < below) {
             is_real = true;
-            end = {t, a.index, density};
+            end = {t, a.index};
             const Vec3f ratio = extinction / Vec3f(extinction[hero]);
             weight.weight = weight.weight * ratio;
             weight.rate = weight.rate * ratio;
@@ -130,6 +123,7 @@ Vec3f Tracker::transmittance(const Ray& ray, TransmittanceEstimator estimator,
 // the mean of each block as control, what remains is the residual around it.
 Vec3f Tracker::ratio_tracking(const Ray& ray, bool with_control, RandomStream& random) {
     constexpr float faint = 0.05f, survival = 0.25f;
+    constexpr float longest = 1e30f;  // in place of infinity, which must not meet a 0
     MediaWalk walk(media, ray);
     MediaRun run;
     Vec3f product(1), control_depth;
@@ -143,7 +137,7 @@ Vec3f Tracker::ratio_tracking(const Ray& ray, bool with_control, RandomStream& r
                 const float mean = a.segment.mean / a.medium->strength();
                 if (a.segment.mean > 0) control += mean * a.medium->cross_sections().extinction();
             }
-            control_depth += static_cast<float>(run.t1 - run.t0) * control;
+            control_depth += std::min(static_cast<float>(run.t1 - run.t0), longest) * control;
             majorant = is_flat ? 0 : std::max(run.max - run.mean, run.mean - run.min);
         }
         if (majorant == 0) continue;
@@ -208,7 +202,7 @@ double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t
         if (s.max == 0) continue;
         sum += s.min == s.max ? static_cast<double>(s.mean / medium.strength()) * (s.t1 - s.t0)
                               : exact_integral(medium, s, lookups);
-        if (sum > enough) break;
+        if (sum > enough) return std::min(sum, 1e30);
     }
     return sum;
 }

@@ -14,7 +14,6 @@ namespace gischt {
 struct Collision {
     double t = 0;
     std::size_t medium = 0;  // index in the list of media; the one that scatters
-    float density = 0;       // of that medium there
 };
 
 // What trackers read and count. One per thread.
