@@ -8,6 +8,9 @@ const Table<LightParams>& common_table() {
     static const Table<LightParams> table =
         Table<LightParams>("light", "What all lights have")
             .add("name", &LightParams::name, {.help = "For messages and --set"})
+            .add("group", &LightParams::group,
+                 {.help = "Lights of one group get the layer light_GROUP of an EXR, where the "
+                          "method can tell them apart"})
             .add("color", &LightParams::color,
                  {.help = "Factor per channel; (1, 1, 1) is a flat spectrum",
                   .min = 0,

@@ -15,7 +15,7 @@ namespace gischt {
 
 // What all lights have: a strength in their own unit, times a colour, times that of a black body.
 struct LightParams {
-    std::string name;
+    std::string name, group;
     Keyed<Vec3d> color{Vec3d{1, 1, 1}};
     Keyed<double> temperature{0};  // K; its colour has luminance 1; 0: none
 };

@@ -40,6 +40,7 @@ struct LightRig::Builder {
     template <class L>
     void add(L light, const LightParams& params, bool camera_visible) {
         light.name = params.name;
+        light.group = params.group;
         light.camera_visible = camera_visible;
         lights.push_back(std::make_shared<L>(std::move(light)));
     }

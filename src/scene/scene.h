@@ -52,8 +52,8 @@ struct FilmParams {
     ToneKind tone = ToneKind::Filmic;
     FilterKind filter = FilterKind::BlackmanHarris;
     double filter_radius = 0;  // pixels; 0: the filter's own
-    double shutter =
-        0;  // share of a frame that the film is exposed; used by methods with motion blur
+    double shutter = 0;        // share of a frame that the film is exposed, centred on its moment
+    std::vector<std::string> aovs;  // further layers of an EXR, see render/aov.h
 };
 
 struct RenderSection {
