@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "optics/surface_content.h"
+#include "optics/surface_light.h"
 
 namespace gischt {
 namespace {
@@ -36,6 +37,12 @@ struct Coordinates {
         return {p[u] / b.size[u], p[v] / b.size[v]};
     }
     Vec2d operator()(const Plane&) const { return {p.x, p.y}; }
+    Vec2d operator()(const Rectangle& r) const {
+        return {p.x / length(r.edge_x), p.y / length(r.edge_y)};
+    }
+    Vec2d operator()(const Disc& d) const {
+        return {0.5 + 0.5 * p.x / d.radius, 0.5 + 0.5 * p.y / d.radius};
+    }
 
     int largest_axis() const {
         const Vec3d a = abs(n);
@@ -53,6 +60,8 @@ double rounding_offset(const Shape& shape, const Ray& ray, double t) {
             return max_component(abs(b.center)) + max_component(b.size);
         }
         double operator()(const Plane& p) const { return max_component(abs(p.point)); }
+        double operator()(const Rectangle& r) const { return max_component(abs(r.center)); }
+        double operator()(const Disc& d) const { return max_component(abs(d.center)); }
     };
     constexpr double ulps = 32 * std::numeric_limits<double>::epsilon();
     const double way = max_component(abs(ray.origin)) + t * max_component(abs(ray.direction));
@@ -62,7 +71,7 @@ double rounding_offset(const Shape& shape, const Ray& ray, double t) {
 }  // namespace
 
 const Shape& SurfaceSet::Content::shape(const SurfaceEntry& s, float moment, Shape& moved) const {
-    if (!s.is_moving) return s.shape;
+    if (!s.info.is_moving) return s.shape;
     moved = shape_at(s.params, time_at(moment), scene_up);
     return moved;
 }
@@ -77,7 +86,13 @@ SurfaceSet::SurfaceSet(const std::vector<SurfaceParams>& surfaces, double time,
     for (const SurfaceParams& s : surfaces) {
         content->surfaces.push_back(make_surface(s, time, shutter, scene_up));
     }
+    content->lights = make_surface_lights(content->surfaces);
     content_ = std::move(content);
+}
+
+const std::vector<std::shared_ptr<const SurfaceLight>>& SurfaceSet::lights() const {
+    static const std::vector<std::shared_ptr<const SurfaceLight>> none;
+    return content_ ? content_->lights : none;
 }
 
 int SurfaceSet::size() const {
@@ -120,12 +135,13 @@ std::optional<SurfaceHit> SurfaceSet::intersect(const Ray& ray, float moment, Ra
     hit.shading_normal = hit.normal;
     hit.offset = rounding_offset(shape, ray, hit.t);
     hit.surface = static_cast<int>(index);
-    const Transform to_board = s.is_moving ? local_frame(shape).inverse() : s.to_board;
+    const Transform to_board = s.info.is_moving ? local_frame(shape).inverse() : s.to_board;
     const Vec3d p = to_board.point(hit.point), n = to_board.vector(nearest->normal);
     hit.uv = std::visit(Coordinates{p, n}, shape);
     const bool second = s.checker_size > 0 && is_second_field(s, p, n);
     hit.albedo = second ? s.checker : s.albedo;
-    hit.emission = s.info.emission;
+    if (hit.front || s.info.two_sided) hit.emission = s.info.emission;
+    hit.primitive = nearest->face;
     return hit;
 }
 

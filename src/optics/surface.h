@@ -16,7 +16,11 @@ class Medium;          // optics/medium.h
 struct SphereSurface;  // optics/surface_params.h
 struct BoxSurface;
 struct GroundSurface;
-using SurfaceParams = std::variant<SphereSurface, BoxSurface, GroundSurface>;
+struct RectSurface;
+struct DiscSurface;
+using SurfaceParams =
+    std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface>;
+class SurfaceLight;       // optics/surface_light.h
 enum class MaterialKind;  // optics/material.h
 
 // Where a ray meets a surface.
@@ -40,7 +44,10 @@ enum class RayKind { Camera, Other };
 struct SurfaceInfo {
     std::string name;
     MaterialKind material{};
-    Vec3f emission;  // W/(m^2 sr)
+    Vec3f emission;          // W/(m^2 sr)
+    bool two_sided = true;   // shines to both sides; false for sheets that shine to their front
+    bool is_moving = false;  // while the film is exposed
+    bool is_lamp = false;    // stands for a light of the scene, not for a solid
     bool holdout = false, shadow_catcher = false, camera_visible = true;
 
     // The inside of a dielectric or of a boundary of material None (optics/interior.h).
@@ -80,6 +87,10 @@ class SurfaceSet {
     // The surfaces with an interior that a point lies in, outer before inner, each as often as it
     // does so (a mesh that overlaps itself may count twice).
     std::vector<int> interiors_at(const Vec3d& point, float moment = 0.5f) const;
+
+    // The finite surfaces that glow, as lights to sample. Those that move while the film is exposed
+    // are not among them: light paths can only find them.
+    const std::vector<std::shared_ptr<const SurfaceLight>>& lights() const;
 
     // Box around the finite surfaces, empty when there are none.
     Box3d bounds() const;

@@ -40,6 +40,24 @@ struct ShapeAt {
         if (!(length(normal) > 0)) refuse(s.name, "the normal has no length");
         return Plane{s.point.at(time), normalize(normal)};
     }
+    Shape operator()(const RectSurface& s) const {
+        if (!(s.size.x > 0 && s.size.y > 0)) refuse(s.name, "the size is not positive");
+        const Vec3d n = sheet_normal(s);
+        // The first edge is horizontal; for a sheet that lies, along x.
+        Vec3d x = cross(scene_up, n);
+        x = length(x) > 1e-6 ? normalize(x) : up_frame(n).column[0];
+        x = Transform::rotation(n, radians(s.roll_degrees)).vector(x);
+        return Rectangle{s.center.at(time), s.size.x * x, s.size.y * cross(n, x)};
+    }
+    Shape operator()(const DiscSurface& s) const {
+        if (!(s.radius > 0)) refuse(s.name, "the radius is not positive");
+        return Disc{s.center.at(time), sheet_normal(s), s.radius};
+    }
+    Vec3d sheet_normal(const SheetPlace& s) const {
+        const Vec3d n = s.target ? s.target->at(time) - s.center.at(time) : s.normal;
+        if (!(length(n) > 0)) refuse(s.name, "the normal has no length");
+        return normalize(n);
+    }
 };
 
 struct IsMoving {
@@ -50,6 +68,9 @@ struct IsMoving {
         return !s.center.is_constant() || !s.rotation_degrees.is_constant();
     }
     bool operator()(const GroundSurface& s) const { return !s.point.is_constant(); }
+    bool operator()(const SheetPlace& s) const {
+        return !s.center.is_constant() || (s.target && !s.target->is_constant());
+    }
 };
 
 struct LocalFrame {
@@ -59,6 +80,11 @@ struct LocalFrame {
         return at(b.rotation, b.center - b.rotation.vector(0.5 * b.size));
     }
     Transform operator()(const Plane& p) const { return at(up_frame(p.normal), p.point); }
+    Transform operator()(const Rectangle& r) const {
+        const Transform frame{{normalize(r.edge_x), normalize(r.edge_y), r.normal()}, {}};
+        return at(frame, r.center - 0.5 * (r.edge_x + r.edge_y));
+    }
+    Transform operator()(const Disc& d) const { return at(up_frame(d.normal), d.center); }
 
     static Transform at(Transform frame, const Vec3d& origin) {
         frame.translation = origin;
@@ -147,14 +173,19 @@ const Material& material_of(const SurfaceParams& surface) {
     return std::visit([](const auto& s) -> const Material& { return s.material; }, surface);
 }
 
+const SheetPlace* sheet_of(const SurfaceParams& surface) {
+    if (const auto* rect = std::get_if<RectSurface>(&surface)) return rect;
+    return std::get_if<DiscSurface>(&surface);
+}
+
 SurfaceEntry make_surface(const SurfaceParams& surface, double time, double shutter,
                           const Vec3d& scene_up) {
     const Material& m = material_of(surface);
     SurfaceEntry s;
     s.params = surface;
     s.shape = shape_at(surface, time, scene_up);
-    s.is_moving = shutter > 0 && std::visit(IsMoving{}, surface);
-    if (s.is_moving) {
+    s.info.is_moving = shutter > 0 && std::visit(IsMoving{}, surface);
+    if (s.info.is_moving) {
         // Sizes that are not positive are refused here, not in the middle of a picture.
         shape_at(surface, time - 0.5 * shutter, scene_up);
         shape_at(surface, time + 0.5 * shutter, scene_up);
@@ -176,6 +207,10 @@ SurfaceEntry make_surface(const SurfaceParams& surface, double time, double shut
     info.priority = m.priority;
     if (m.kind == MaterialKind::Dielectric) info.ior = m.ior;
     if (info.has_interior && m.medium) info.medium = inline_medium(s.shape, *m.medium, time);
+    if (const auto* sheet = sheet_of(surface)) {
+        info.two_sided = sheet->two_sided;
+        if (info.has_interior) refuse(info.name, "a sheet has no inside", "take a box");
+    }
     s.is_stopping = m.kind != MaterialKind::None;
     return s;
 }

@@ -19,7 +19,6 @@ struct SurfaceEntry {
     SurfaceParams params;
     SurfaceInfo info;
     Shape shape;              // at the middle of the shutter
-    bool is_moving = false;   // then the shape is made anew for each ray
     bool is_stopping = true;  // blocks light: all but material None
     Transform to_board;       // a point into the frame of checker board and coordinates
 
@@ -33,6 +32,7 @@ struct SurfaceEntry {
 
 struct SurfaceSet::Content {
     std::vector<SurfaceEntry> surfaces;
+    std::vector<std::shared_ptr<const SurfaceLight>> lights;
     double time = 0, shutter = 0;
     Vec3d scene_up;
 
@@ -53,5 +53,7 @@ SurfaceEntry make_surface(const SurfaceParams& surface, double time, double shut
 Transform local_frame(const Shape& shape);
 
 const Material& material_of(const SurfaceParams& surface);
+// Null when it is no sheet.
+const SheetPlace* sheet_of(const SurfaceParams& surface);
 
 }  // namespace gischt

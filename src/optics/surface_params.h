@@ -33,7 +33,24 @@ struct GroundSurface {
     std::optional<Vec3d> normal;  // unset: the scene's up axis
     Material material;
 };
-using SurfaceParams = std::variant<SphereSurface, BoxSurface, GroundSurface>;
+// Thin sheets, which shine to the side of their normal only unless `two_sided`.
+struct SheetPlace {
+    std::string name;
+    Keyed<Vec3d> center{Vec3d{0, 0, 0}};
+    std::optional<Keyed<Vec3d>> target;  // a point that the sheet faces, in place of normal
+    Vec3d normal{0, 0, 1};
+    bool two_sided = false;
+    Material material;
+};
+struct RectSurface : SheetPlace {
+    Vec2d size{1, 1};         // along the horizontal edge, and across
+    double roll_degrees = 0;  // around the normal
+};
+struct DiscSurface : SheetPlace {
+    double radius = 0.5;
+};
+using SurfaceParams =
+    std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface>;
 
 const Variants<SurfaceParams>& surface_variants();
 
