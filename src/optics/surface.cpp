@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.h"
 #include "base/units.h"
 #include "optics/surface_content.h"
 #include "optics/surface_light.h"
@@ -72,7 +73,8 @@ double rounding_offset(const Shape& shape, const Ray& ray, double t) {
 
 const Shape& SurfaceSet::Content::shape(const SurfaceEntry& s, float moment, Shape& moved) const {
     if (!s.info.is_moving) return s.shape;
-    moved = shape_at(s.params, time_at(moment), scene_up);
+    const SurfaceMoments moments{time, shutter, scene_up};
+    moved = shape_at(s.params, moments.at(static_cast<double>(moment)), scene_up);
     return moved;
 }
 
@@ -83,10 +85,14 @@ SurfaceSet::SurfaceSet(const std::vector<SurfaceParams>& surfaces, double time,
     content->time = time;
     content->shutter = shutter;
     content->scene_up = scene_up;
+    EnergyTables tables;
     for (const SurfaceParams& s : surfaces) {
-        content->surfaces.push_back(make_surface(s, time, shutter, scene_up));
+        if (!material_of(s).interior.empty()) {
+            throw Error(ErrorKind::Usage, surface_name(s), "fluids are not known here");
+        }
+        content->surfaces.push_back(make_surface(s, {}, {time, shutter, scene_up}, tables));
     }
-    content->lights = make_surface_lights(content->surfaces);
+    finish(*content, nullptr);
     content_ = std::move(content);
 }
 
@@ -109,49 +115,114 @@ bool SurfaceSet::is_interior(const Medium* medium) const {
                        [&](const SurfaceEntry& s) { return s.info.medium.get() == medium; });
 }
 
+namespace {
+
+// Albedo, emission and side of a hit whose place is known; `outward` is the outer normal.
+void finish_hit(SurfaceHit& hit, const SurfaceEntry& s, const Transform& to_board,
+                const Vec3d& outward) {
+    const bool is_board = s.checker_size > 0;
+    const bool second =
+        is_board && is_second_field(s, to_board.point(hit.point), to_board.vector(outward));
+    hit.albedo = second ? s.checker : s.albedo;
+    if (s.texture)
+        hit.albedo = hit.albedo * s.texture->at({s.repeat.x * hit.uv.x, s.repeat.y * hit.uv.y});
+    if (hit.front || s.info.two_sided) hit.emission = s.info.emission;
+}
+
+SurfaceHit analytic_hit(const SurfaceEntry& s, const Shape& shape, const Hit& found,
+                        const Ray& ray) {
+    SurfaceHit hit;
+    hit.t = found.t;
+    hit.point = ray.at(hit.t);
+    hit.front = dot(found.normal, ray.direction) <= 0;
+    hit.normal = hit.front ? found.normal : -found.normal;
+    hit.shading_normal = hit.normal;
+    hit.offset = rounding_offset(shape, ray, hit.t);
+    hit.primitive = found.face;
+    const Transform to_board = s.info.is_moving ? local_frame(shape).inverse() : s.to_board;
+    hit.uv =
+        std::visit(Coordinates{to_board.point(hit.point), to_board.vector(found.normal)}, shape);
+    finish_hit(hit, s, to_board, found.normal);
+    return hit;
+}
+
+SurfaceHit mesh_hit(const SurfaceEntry& s, const TriangleHit& found, const Ray& ray) {
+    SurfaceHit hit;
+    hit.t = found.t;
+    hit.point = found.point;
+    hit.front = dot(found.normal, ray.direction) <= 0;
+    hit.normal = hit.front ? found.normal : -found.normal;
+    hit.offset = found.offset;
+    hit.primitive = found.triangle;
+    const Mesh& mesh = *s.mesh->source;
+    const Vec3i& t = mesh.triangles[static_cast<std::size_t>(found.triangle)];
+    const auto i = static_cast<std::size_t>(t.x), j = static_cast<std::size_t>(t.y),
+               k = static_cast<std::size_t>(t.z);
+    const double b = found.barycentric.x, c = found.barycentric.y, a = 1 - b - c;
+    const Vec3d out = -normalize(ray.direction);
+    hit.shading_normal = hit.normal;
+    if (!s.mesh->normals.empty() && dot(out, hit.normal) > 0) {
+        const auto& n = s.mesh->normals;
+        Vec3d smooth = a * Vec3d(n[i]) + b * Vec3d(n[j]) + c * Vec3d(n[k]);
+        if (!hit.front) smooth = -smooth;
+        const double l = length(smooth);
+        if (l > 1e-6) hit.shading_normal = valid_shading_normal(smooth / l, hit.normal, out);
+    }
+    hit.uv = found.barycentric;
+    if (!mesh.uvs.empty()) {
+        const auto mix = [&](float p, float q, float r) {
+            return a * static_cast<double>(p) + b * static_cast<double>(q) +
+                   c * static_cast<double>(r);
+        };
+        const Vec2f &p = mesh.uvs[i], q = mesh.uvs[j], r = mesh.uvs[k];
+        hit.uv = {mix(p.x, q.x, r.x), mix(p.y, q.y, r.y)};
+    }
+    finish_hit(hit, s, s.to_board, found.normal);
+    return hit;
+}
+
+}  // namespace
+
 std::optional<SurfaceHit> SurfaceSet::intersect(const Ray& ray, float moment, RayKind kind) const {
     if (!content_) return std::nullopt;
+    const Content& c = *content_;
     Ray rest = ray;
     std::optional<Hit> nearest;
-    std::size_t index = 0;
+    int index = 0;
     Shape moved;
-    for (std::size_t i = 0; i < content_->surfaces.size(); ++i) {
-        const SurfaceEntry& s = content_->surfaces[i];
+    for (const int i : c.analytic) {
+        const SurfaceEntry& s = c.surfaces[static_cast<std::size_t>(i)];
         if (kind == RayKind::Camera && !s.info.camera_visible) continue;
-        if (const auto h = gischt::intersect(content_->shape(s, moment, moved), rest)) {
+        if (const auto h = gischt::intersect(c.shape(s, moment, moved), rest)) {
             nearest = h;
             rest.t_max = h->t;
             index = i;
         }
     }
-    if (!nearest) return std::nullopt;
-    const SurfaceEntry& s = content_->surfaces[index];
-    const Shape& shape = content_->shape(s, moment, moved);
+    const auto triangle =
+        c.meshes.intersect(rest, moment, kind == RayKind::Camera ? skips_camera : 0);
     SurfaceHit hit;
-    hit.t = nearest->t;
-    hit.point = ray.at(hit.t);
-    hit.front = dot(nearest->normal, ray.direction) <= 0;
-    hit.normal = hit.front ? nearest->normal : -nearest->normal;
-    hit.shading_normal = hit.normal;
-    hit.offset = rounding_offset(shape, ray, hit.t);
-    hit.surface = static_cast<int>(index);
-    const Transform to_board = s.info.is_moving ? local_frame(shape).inverse() : s.to_board;
-    const Vec3d p = to_board.point(hit.point), n = to_board.vector(nearest->normal);
-    hit.uv = std::visit(Coordinates{p, n}, shape);
-    const bool second = s.checker_size > 0 && is_second_field(s, p, n);
-    hit.albedo = second ? s.checker : s.albedo;
-    if (hit.front || s.info.two_sided) hit.emission = s.info.emission;
-    hit.primitive = nearest->face;
+    if (triangle && (!nearest || triangle->t <= nearest->t)) {
+        index = c.mesh_surfaces[static_cast<std::size_t>(triangle->object)];
+        hit = mesh_hit(c.surfaces[static_cast<std::size_t>(index)], *triangle, ray);
+    } else if (nearest) {
+        const SurfaceEntry& s = c.surfaces[static_cast<std::size_t>(index)];
+        hit = analytic_hit(s, c.shape(s, moment, moved), *nearest, ray);
+    } else {
+        return std::nullopt;
+    }
+    hit.surface = index;
     return hit;
 }
 
 bool SurfaceSet::is_blocked(const Ray& ray, float moment) const {
     if (!content_) return false;
     Shape moved;
-    for (const SurfaceEntry& s : content_->surfaces) {
+    for (const int i : content_->analytic) {
+        const SurfaceEntry& s = content_->surfaces[static_cast<std::size_t>(i)];
         if (s.is_stopping && gischt::intersect(content_->shape(s, moment, moved), ray)) return true;
     }
-    return false;
+    return content_->meshes.is_blocked(ray, moment, skips_shadow);
 }
 
 Bsdf SurfaceSet::bsdf(const SurfaceHit& hit, double relative_ior) const {
@@ -188,13 +259,25 @@ std::vector<int> SurfaceSet::interiors_at(const Vec3d& point, float moment) cons
     ray.direction = normalize(Vec3d{0.3190, 0.5241, 0.7897});
     std::vector<Inside> insides;
     Shape moved;
-    for (int i = 0; i < size(); ++i) {
+    for (const int i : content_->analytic) {
         const SurfaceEntry& s = content_->surfaces[static_cast<std::size_t>(i)];
         if (!s.info.has_interior) continue;
         const Shape& shape = content_->shape(s, moment, moved);
         if (signed_distance(shape, point) >= 0) continue;
         const auto exit = gischt::intersect(shape, ray);
         insides.push_back({exit ? exit->t : std::numeric_limits<double>::infinity(), i});
+    }
+    // A ray out of a closed mesh leaves it as often more than it enters as it starts inside; each
+    // new record of that number is the exit from one more layer.
+    std::vector<int> left(content_->mesh_surfaces.size(), 0), record = left;
+    for (const TriangleHit& h : content_->meshes.all_hits(ray, moment)) {
+        const auto object = static_cast<std::size_t>(h.object);
+        const int surface = content_->mesh_surfaces[object];
+        if (!info(surface).has_interior) continue;
+        left[object] += dot(h.normal, ray.direction) > 0 ? 1 : -1;
+        if (left[object] <= record[object]) continue;
+        record[object] = left[object];
+        insides.push_back({h.t, surface});
     }
     std::stable_sort(insides.begin(), insides.end(),
                      [](const Inside& a, const Inside& b) { return a.exit > b.exit; });
@@ -206,9 +289,11 @@ std::vector<int> SurfaceSet::interiors_at(const Vec3d& point, float moment) cons
 Box3d SurfaceSet::bounds() const {
     Box3d all = Box3d::empty();
     if (!content_) return all;
-    for (const SurfaceEntry& s : content_->surfaces) {
-        if (!std::holds_alternative<Plane>(s.shape)) all.extend(gischt::bounds(s.shape));
+    for (const int i : content_->analytic) {
+        const Shape& shape = content_->surfaces[static_cast<std::size_t>(i)].shape;
+        if (!std::holds_alternative<Plane>(shape)) all.extend(gischt::bounds(shape));
     }
+    if (!content_->meshes.is_empty()) all.extend(content_->meshes.bounds());
     return all;
 }
 

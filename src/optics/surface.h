@@ -18,8 +18,9 @@ struct BoxSurface;
 struct GroundSurface;
 struct RectSurface;
 struct DiscSurface;
+struct MeshSurface;
 using SurfaceParams =
-    std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface>;
+    std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface, MeshSurface>;
 class SurfaceLight;       // optics/surface_light.h
 enum class MaterialKind;  // optics/material.h
 
@@ -95,8 +96,10 @@ class SurfaceSet {
     // Box around the finite surfaces, empty when there are none.
     Box3d bounds() const;
 
+    struct Content;  // surface_content.h
+    explicit SurfaceSet(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+
   private:
-    struct Content;
     std::shared_ptr<const Content> content_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -53,6 +54,10 @@ struct ShapeAt {
         if (!(s.radius > 0)) refuse(s.name, "the radius is not positive");
         return Disc{s.center.at(time), sheet_normal(s), s.radius};
     }
+    Shape operator()(const MeshSurface& s) const {
+        if (!(s.scale.at(time) > 0)) refuse(s.name, "the scale is not positive");
+        return Sphere{};  // unused
+    }
     Vec3d sheet_normal(const SheetPlace& s) const {
         const Vec3d n = s.target ? s.target->at(time) - s.center.at(time) : s.normal;
         if (!(length(n) > 0)) refuse(s.name, "the normal has no length");
@@ -71,7 +76,13 @@ struct IsMoving {
     bool operator()(const SheetPlace& s) const {
         return !s.center.is_constant() || (s.target && !s.target->is_constant());
     }
+    bool operator()(const MeshSurface&) const { return false; }
 };
+
+bool moves(const MeshSurface& s, const Mesh& mesh) {
+    return !mesh.velocities.empty() || !s.translate.is_constant() ||
+           !s.rotate_degrees.is_constant() || !s.scale.is_constant();
+}
 
 struct LocalFrame {
     Transform operator()(const Sphere& s) const { return at({}, s.center); }
@@ -97,33 +108,24 @@ struct LocalFrame {
 constexpr double least_roughness = 0.01;
 
 // The scattering function of a material without its albedo.
-void set_lobe(SurfaceEntry& s, const Material& m) {
+void set_lobe(SurfaceEntry& s, const Material& m, EnergyTables& tables) {
     const double alpha = m.roughness < least_roughness ? 0 : m.roughness * m.roughness;
     switch (m.kind) {
         case MaterialKind::Lambert:
             s.lobe = LambertLobe{};
             break;
         case MaterialKind::Conductor: {
-            ConductorLobe lobe;
-            lobe.alpha = alpha;
-            lobe.is_color = !m.metal;
-            if (m.metal) {
-                const MetalIndex index = metal_index(*m.metal);
-                lobe.eta = index.eta;
-                lobe.k = index.k;
-            }
-            if (alpha > 0) s.energy = std::make_shared<EnergyTable>(alpha);
-            lobe.energy = s.energy.get();
-            s.lobe = lobe;
+            const MetalIndex index = m.metal ? metal_index(*m.metal) : MetalIndex{};
+            if (alpha > 0) s.energy = tables.reflection(alpha, 0);
+            s.lobe = ConductorLobe{index.eta, index.k, !m.metal, alpha, s.energy.get()};
             break;
         }
-        case MaterialKind::Dielectric: {
-            if (alpha > 0) s.dielectric_energy = std::make_shared<DielectricEnergyTable>(alpha);
+        case MaterialKind::Dielectric:
+            if (alpha > 0) s.dielectric_energy = tables.dielectric(alpha);
             s.lobe = DielectricLobe{m.ior, Vec3f(1), alpha, s.dielectric_energy.get()};
             break;
-        }
         case MaterialKind::Plastic:
-            s.energy = std::make_shared<EnergyTable>(alpha, m.ior);
+            s.energy = tables.reflection(alpha, m.ior);
             s.lobe = PlasticLobe{{}, m.ior, alpha, s.energy.get()};
             break;
         case MaterialKind::None:
@@ -144,19 +146,28 @@ Vec3f base_color(const Material& m) {
     }
 }
 
-// The homogeneous medium inside of a surface fills a box around it: only the surface bounds it.
-std::shared_ptr<const Medium> inline_medium(const Shape& shape, const MediumParams& params,
-                                            double time) {
+// A homogeneous medium inside of a surface fills a box around it: only the surface bounds it.
+std::shared_ptr<const Medium> inline_medium(const SurfaceEntry& s, const MediumParams& params,
+                                            const SurfaceMoments& moments) {
     Region region;
-    if (const auto* plane = std::get_if<Plane>(&shape)) {
+    if (const auto* plane = std::get_if<Plane>(&s.shape)) {
         region.center = plane->point;
         region.size = Vec3d(2e6);
-    } else {
-        const Box3d box = bounds(shape);
-        region = Region::box(box);
-        region.size = 1.02 * region.size;
+        return std::make_shared<const Medium>(region, params, moments.time);
     }
-    return std::make_shared<const Medium>(region, params, time);
+    Box3d box = Box3d::empty();
+    if (s.mesh) {
+        const TriangleObject object = triangle_object(s, moments);
+        for (const Vec3d& p : object.points) box.extend(p);
+        for (const Vec3d& p : object.points_end) box.extend(p);
+    } else {
+        for (const double moment : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+            box.extend(bounds(shape_at(s.params, moments.at(moment), moments.scene_up)));
+        }
+    }
+    region = Region::box(box);
+    region.size = 1.1 * region.size;
+    return std::make_shared<const Medium>(region, params, moments.time);
 }
 
 }  // namespace
@@ -178,26 +189,59 @@ const SheetPlace* sheet_of(const SurfaceParams& surface) {
     return std::get_if<DiscSurface>(&surface);
 }
 
-SurfaceEntry make_surface(const SurfaceParams& surface, double time, double shutter,
-                          const Vec3d& scene_up) {
-    const Material& m = material_of(surface);
-    SurfaceEntry s;
-    s.params = surface;
-    s.shape = shape_at(surface, time, scene_up);
-    s.info.is_moving = shutter > 0 && std::visit(IsMoving{}, surface);
-    if (s.info.is_moving) {
-        // Sizes that are not positive are refused here, not in the middle of a picture.
-        shape_at(surface, time - 0.5 * shutter, scene_up);
-        shape_at(surface, time + 0.5 * shutter, scene_up);
-    }
-    s.to_board = local_frame(s.shape).inverse();
-    s.albedo = base_color(m);
-    s.checker = Vec3f(m.checker);
-    s.checker_size = m.checker_size;
-    set_lobe(s, m);
+const std::string& surface_name(const SurfaceParams& surface) {
+    return std::visit([](const auto& s) -> const std::string& { return s.name; }, surface);
+}
 
-    SurfaceInfo& info = s.info;
-    info.name = std::visit([](const auto& p) { return p.name; }, surface);
+std::shared_ptr<const EnergyTable> EnergyTables::reflection(double alpha, double eta) {
+    auto& table = reflection_[{alpha, eta}];
+    if (!table) table = std::make_shared<EnergyTable>(alpha, eta);
+    return table;
+}
+
+std::shared_ptr<const DielectricEnergyTable> EnergyTables::dielectric(double alpha) {
+    auto& table = dielectric_[alpha];
+    if (!table) table = std::make_shared<DielectricEnergyTable>(alpha);
+    return table;
+}
+
+Transform mesh_placement(const MeshSurface& mesh, double time, const Vec3d& scene_up) {
+    const Vec3d file_up = mesh.up == FileUp::Y ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+    Transform t = turned(mesh.rotate_degrees.at(time)) *
+                  Transform::scale_translate(mesh.scale.at(time), {}) * up_frame(scene_up) *
+                  up_frame(file_up).inverse();
+    t.translation = mesh.translate.at(time);
+    return t;
+}
+
+TriangleObject triangle_object(const SurfaceEntry& s, const SurfaceMoments& moments) {
+    const auto& params = std::get<MeshSurface>(s.params);
+    const Mesh& mesh = *s.mesh->source;
+    const auto points_at = [&](double moment) {
+        const Transform map = mesh_placement(params, moments.at(moment), moments.scene_up);
+        std::vector<Vec3d> points;
+        points.reserve(mesh.points.size());
+        for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+            Vec3d p(mesh.points[i]);
+            if (!mesh.velocities.empty()) {
+                p += (moment - 0.5) * moments.shutter * Vec3d(mesh.velocities[i]);
+            }
+            points.push_back(map.point(p));
+        }
+        return points;
+    };
+    TriangleObject object;
+    object.points = points_at(s.info.is_moving ? 0 : 0.5);
+    if (s.info.is_moving) object.points_end = points_at(1);
+    object.triangles = mesh.triangles;
+    object.bits = (s.info.camera_visible ? 0 : skips_camera) | (s.is_stopping ? 0 : skips_shadow);
+    return object;
+}
+
+// What a surface is beside its shape.
+static SurfaceInfo make_info(const SurfaceParams& surface, const Material& m, double time) {
+    SurfaceInfo info;
+    info.name = surface_name(surface);
     info.material = m.kind;
     info.emission = Vec3f(m.emission.at(time));
     info.holdout = m.holdout;
@@ -206,13 +250,80 @@ SurfaceEntry make_surface(const SurfaceParams& surface, double time, double shut
     info.has_interior = m.kind == MaterialKind::Dielectric || m.kind == MaterialKind::None;
     info.priority = m.priority;
     if (m.kind == MaterialKind::Dielectric) info.ior = m.ior;
-    if (info.has_interior && m.medium) info.medium = inline_medium(s.shape, *m.medium, time);
-    if (const auto* sheet = sheet_of(surface)) {
+    if (const SheetPlace* sheet = sheet_of(surface)) {
         info.two_sided = sheet->two_sided;
         if (info.has_interior) refuse(info.name, "a sheet has no inside", "take a box");
     }
+    return info;
+}
+
+// A mesh where it stands in the middle of the shutter.
+static void place_mesh(SurfaceEntry& s, const SurfaceSources& sources,
+                       const SurfaceMoments& moments) {
+    const auto& params = std::get<MeshSurface>(s.params);
+    if (!sources.mesh) refuse(s.info.name, "meshes cannot be read here", "take another shape");
+    auto mesh = std::make_shared<PlacedMesh>();
+    mesh->source = sources.mesh;
+    mesh->is_closed = sources.is_closed;
+    const Transform map = mesh_placement(params, moments.time, moments.scene_up);
+    s.to_board = map.inverse();
+    for (const Vec3f& n : sources.mesh->normals) {
+        mesh->normals.emplace_back(normalize(map.vector(Vec3d(n))));
+    }
+    s.info.is_moving = moments.shutter > 0 && moves(params, *sources.mesh);
+    // A closed one shines outwards, as half of the samples would be lost inside.
+    s.info.two_sided = !sources.is_closed;
+    s.mesh = std::move(mesh);
+}
+
+SurfaceEntry make_surface(const SurfaceParams& surface, const SurfaceSources& sources,
+                          const SurfaceMoments& moments, EnergyTables& tables) {
+    const Material& m = material_of(surface);
+    SurfaceEntry s;
+    s.params = surface;
+    s.info = make_info(surface, m, moments.time);
     s.is_stopping = m.kind != MaterialKind::None;
+    s.shape = shape_at(surface, moments.time, moments.scene_up);
+    // Sizes that are not positive are refused here, not in the middle of a picture.
+    for (const double moment : {0.0, 1.0}) {
+        shape_at(surface, moments.at(moment), moments.scene_up);
+    }
+    if (std::holds_alternative<MeshSurface>(surface)) {
+        place_mesh(s, sources, moments);
+    } else {
+        s.info.is_moving = moments.shutter > 0 && std::visit(IsMoving{}, surface);
+        s.to_board = local_frame(s.shape).inverse();
+    }
+    s.albedo = base_color(m);
+    s.checker = Vec3f(m.checker);
+    s.checker_size = m.checker_size;
+    if (m.texture && !sources.texture) {
+        refuse(s.info.name, "pictures cannot be read here", "give one colour");
+    }
+    if (m.texture) s.repeat = m.texture->repeat;
+    s.texture = sources.texture;
+    set_lobe(s, m, tables);
+    if (s.info.has_interior) {
+        s.info.medium = m.medium ? inline_medium(s, *m.medium, moments) : sources.medium;
+    }
     return s;
+}
+
+void finish(SurfaceSet::Content& content, const EmbreeScene* meshes) {
+    const SurfaceMoments moments{content.time, content.shutter, content.scene_up};
+    std::vector<TriangleObject> objects;
+    for (std::size_t i = 0; i < content.surfaces.size(); ++i) {
+        SurfaceEntry& s = content.surfaces[i];
+        if (!s.mesh) {
+            content.analytic.push_back(static_cast<int>(i));
+            continue;
+        }
+        s.object = static_cast<int>(content.mesh_surfaces.size());
+        content.mesh_surfaces.push_back(static_cast<int>(i));
+        if (!meshes) objects.push_back(triangle_object(s, moments));
+    }
+    content.meshes = meshes ? *meshes : EmbreeScene(std::move(objects));
+    content.lights = make_surface_lights(content);
 }
 
 }  // namespace gischt

@@ -256,6 +256,108 @@ std::vector<Face> box_faces(const SolidBox& box) {
     return faces;
 }
 
+// ---- Triangles of a mesh.
+class MeshLight : public SurfaceLight {
+  public:
+    MeshLight(const std::vector<Vec3d>& points, const std::vector<Vec3i>& triangles,
+              bool both_sides, int surface, const Vec3f& emission)
+        : points_(points), triangles_(triangles), both_sides_(both_sides) {
+        surface_ = surface;
+        emission_ = emission;
+        Box3d box = Box3d::empty();
+        cumulative_.push_back(0);
+        for (const Vec3i& t : triangles_) {
+            const auto [a, b, c] = corners(t);
+            cumulative_.push_back(cumulative_.back() + 0.5 * length(cross(b - a, c - a)));
+            for (const Vec3d& p : {a, b, c}) box.extend(p);
+        }
+        middle_ = 0.5 * (box.lo + box.hi);
+        reach_ = length(0.5 * (box.hi - box.lo));
+    }
+
+    LightSample sample(const Vec3d& point, Vec2f u) const override {
+        const double area = static_cast<double>(u.x) * cumulative_.back();
+        const auto next = std::upper_bound(cumulative_.begin() + 1, cumulative_.end() - 1, area);
+        const auto i = static_cast<std::size_t>(next - cumulative_.begin()) - 1;
+        const double share = (area - cumulative_[i]) / (cumulative_[i + 1] - cumulative_[i]);
+        const Vec2f v{std::clamp(static_cast<float>(share), 0.0f, 0x1.fffffep-1f), u.y};
+        const auto [a, b, c] = corners(triangles_[i]);
+        const Vec3d f = cross(b - a, c - a);
+        if (!both_sides_ && dot(point - a, f) <= 0) return {{0, 0, 1}, 0, {}, 0};
+        const SphericalTriangle seen(point, a, b, c);
+        Vec3d p;
+        if (seen.solid_angle() > least_solid_angle) {
+            const Vec3d d = seen.direction(v);
+            p = point + dot(a - point, f) / dot(d, f) * d;
+        } else {
+            // Evenly in area: the square folded to a triangle by its root.
+            const double r = std::sqrt(static_cast<double>(v.x)), s = static_cast<double>(v.y);
+            p = (1 - r) * a + r * (1 - s) * b + r * s * c;
+        }
+        LightSample sample = towards(point, p, emission_, triangle_pdf(point, i, p));
+        // The search for what is in between has the rounding of float.
+        const double cosine = std::abs(dot(sample.direction, f)) / length(f);
+        sample.distance -= std::min(0.5 * sample.distance, 1e-6 * reach_ / (cosine + 1e-3));
+        return sample;
+    }
+    // Goes through all triangles; pdf_of_hit does not.
+    float pdf(const Vec3d& point, const Vec3d& direction) const override {
+        double nearest = 1e300, pdf = 0;
+        for (std::size_t i = 0; i < triangles_.size(); ++i) {
+            const auto [a, b, c] = corners(triangles_[i]);
+            const Vec3d e1 = b - a, e2 = c - a, h = cross(direction, e2), s = point - a,
+                        q = cross(s, e1);
+            const double det = dot(e1, h), u = dot(s, h) / det, v = dot(direction, q) / det,
+                         t = dot(e2, q) / det;
+            if (!(u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < nearest)) continue;
+            nearest = t;
+            pdf = triangle_pdf(point, i, point + t * direction);
+        }
+        return static_cast<float>(pdf);
+    }
+    float pdf_of_hit(const Vec3d& from, const SurfaceHit& hit) const override {
+        return static_cast<float>(
+            triangle_pdf(from, static_cast<std::size_t>(hit.primitive), hit.point));
+    }
+    // An estimate: the light of a ball around the mesh with the same power, halved where only one
+    // side of each triangle can be seen.
+    Vec3f mean_radiance(const Vec3d& point) const override {
+        const Vec3d d = point - middle_;
+        const double r2 = std::max(dot(d, d), reach_ * reach_);
+        return emission_ *
+               static_cast<float>(std::min(1.0, over_sphere * 0.5 * cumulative_.back() / r2));
+    }
+    double power() const override {
+        return pi * cumulative_.back() * (both_sides_ ? 2 : 1) *
+               static_cast<double>(luminance(emission_));
+    }
+
+  private:
+    std::array<Vec3d, 3> corners(const Vec3i& t) const {
+        return {points_[static_cast<std::size_t>(t.x)], points_[static_cast<std::size_t>(t.y)],
+                points_[static_cast<std::size_t>(t.z)]};
+    }
+    // 1/sr, of a point p of triangle i.
+    double triangle_pdf(const Vec3d& from, std::size_t i, const Vec3d& p) const {
+        const auto [a, b, c] = corners(triangles_[i]);
+        const Vec3d f = cross(b - a, c - a);
+        if (!both_sides_ && dot(from - a, f) <= 0) return 0;
+        const double area = cumulative_[i + 1] - cumulative_[i], chance = area / cumulative_.back();
+        const double solid_angle = triangle_solid_angle(from, a, b, c);
+        if (solid_angle > least_solid_angle) return chance / solid_angle;
+        const Vec3d d = p - from;
+        const double r2 = dot(d, d), facing = std::abs(dot(d, f)) / (2 * area);
+        return facing > 0 ? chance * r2 * std::sqrt(r2) / (facing * area) : 0;
+    }
+
+    std::vector<Vec3d> points_;
+    std::vector<Vec3i> triangles_;
+    std::vector<double> cumulative_;  // area before each triangle
+    bool both_sides_;
+    Vec3d middle_;
+    double reach_ = 0;
+};
+
 struct MakeLight {
     int surface;
     const SurfaceInfo& info;
@@ -282,16 +384,25 @@ struct MakeLight {
 }  // namespace
 
 std::vector<std::shared_ptr<const SurfaceLight>> make_surface_lights(
-    const std::vector<SurfaceEntry>& surfaces) {
+    const SurfaceSet::Content& content) {
     std::vector<std::shared_ptr<const SurfaceLight>> lights;
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const SurfaceInfo& info = surfaces[i].info;
-        if (!(max_component(info.emission) > 0) || info.is_moving) continue;
-        if (auto light = std::visit(MakeLight{static_cast<int>(i), info}, surfaces[i].shape)) {
-            light->name = info.name;
-            light->camera_visible = info.camera_visible;
-            lights.push_back(std::move(light));
+    const SurfaceMoments moments{content.time, content.shutter, content.scene_up};
+    for (std::size_t i = 0; i < content.surfaces.size(); ++i) {
+        const SurfaceEntry& s = content.surfaces[i];
+        if (!(max_component(s.info.emission) > 0) || s.info.is_moving) continue;
+        const int index = static_cast<int>(i);
+        std::shared_ptr<SurfaceLight> light;
+        if (s.mesh) {
+            const TriangleObject object = triangle_object(s, moments);
+            light = std::make_shared<MeshLight>(object.points, object.triangles, s.info.two_sided,
+                                                index, s.info.emission);
+        } else {
+            light = std::visit(MakeLight{index, s.info}, s.shape);
         }
+        if (!light) continue;
+        light->name = s.info.name;
+        light->camera_visible = s.info.camera_visible;
+        lights.push_back(std::move(light));
     }
     return lights;
 }

@@ -9,12 +9,11 @@
 
 namespace gischt {
 
-struct SurfaceEntry;  // optics/surface_content.h
-
 // A surface of finite size that glows: directions towards it are drawn evenly over the solid angle
-// that it fills (sphere, box, rectangle) or over its area (disc, triangles of a mesh seen small).
-// It may hide itself and be hidden: whoever draws a sample tests that. The distance of a sample
-// ends a little before the surface, so that the surface does not block the test.
+// that it fills (sphere, box, rectangle) or over its area (disc); a mesh by a triangle in
+// proportion to area, and evenly over that one's solid angle. It may hide itself and be hidden:
+// whoever draws a sample tests that. The distance of a sample ends a little before the surface, so
+// that the surface does not block the test.
 class SurfaceLight : public Light {
   public:
     // Which of the SurfaceSet.
@@ -36,6 +35,6 @@ class SurfaceLight : public Light {
 
 // The lights among the surfaces.
 std::vector<std::shared_ptr<const SurfaceLight>> make_surface_lights(
-    const std::vector<SurfaceEntry>& surfaces);
+    const SurfaceSet::Content& content);
 
 }  // namespace gischt

@@ -49,8 +49,20 @@ struct RectSurface : SheetPlace {
 struct DiscSurface : SheetPlace {
     double radius = 0.5;
 };
+enum class FileUp { Y, Z };
+// Triangles from a file. The smoke does not know them.
+struct MeshSurface {
+    std::string name;
+    std::string file;
+    FileUp up = FileUp::Y;  // the axis that points up in the file; turned to the scene's
+    Keyed<Vec3d> translate{Vec3d{0, 0, 0}};       // m, applied last
+    Keyed<Vec3d> rotate_degrees{Vec3d{0, 0, 0}};  // around x, then y, then z, about the origin
+    Keyed<double> scale{1};                       // about the origin, applied first
+    std::optional<double> smooth_degrees;         // unset: the file's normals; 0: flat faces
+    Material material;
+};
 using SurfaceParams =
-    std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface>;
+    std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface, MeshSurface>;
 
 const Variants<SurfaceParams>& surface_variants();
 

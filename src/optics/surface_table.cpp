@@ -142,6 +142,66 @@ const Table<GroundSurface>& ground_table() {
     return table;
 }
 
+const Table<SheetPlace>& sheet_table() {
+    static const Table<SheetPlace> table =
+        Table<SheetPlace>("sheet", "What thin sheets have; they are no obstacle to fluids")
+            .add("name", &SheetPlace::name, {.help = "For messages and --set"})
+            .add("center", &SheetPlace::center, {.unit = "m", .help = "The middle"})
+            .add("normal", &SheetPlace::normal, {.help = "Direction that the front faces"})
+            .add("target", &SheetPlace::target,
+                 {.unit = "m", .help = "A point that the front faces, in place of normal"})
+            .add("two_sided", &SheetPlace::two_sided,
+                 {.help = "Whether its emission goes to its back too"})
+            .flat(&SheetPlace::material, material_table());
+    return table;
+}
+
+const Table<RectSurface>& rect_table() {
+    static const Table<RectSurface> table =
+        Table<RectSurface>("rect", "A rectangle without thickness")
+            .add("size", &RectSurface::size,
+                 {.unit = "m",
+                  .help = "Lengths of the horizontal edge and of the other",
+                  .min = 0,
+                  .min_open = true})
+            .add("roll_degrees", &RectSurface::roll_degrees,
+                 {.unit = "degrees", .help = "Turned around the normal"})
+            .base(sheet_table());
+    return table;
+}
+
+const Table<DiscSurface>& disc_table() {
+    static const Table<DiscSurface> table =
+        Table<DiscSurface>("disc", "A disc without thickness")
+            .add("radius", &DiscSurface::radius,
+                 {.unit = "m", .help = "The radius", .min = 0, .min_open = true})
+            .base(sheet_table());
+    return table;
+}
+
+const Table<MeshSurface>& mesh_table() {
+    static const Table<MeshSurface> table =
+        Table<MeshSurface>("mesh", "Triangles from a file; fluids do not meet them")
+            .add("name", &MeshSurface::name, {.help = "For messages and --set"})
+            .add("file", &MeshSurface::file,
+                 {.help = "OBJ, PLY, STL, glTF or GLB", .required = true})
+            .choice("up", &MeshSurface::up, {{"y", FileUp::Y}, {"z", FileUp::Z}},
+                    {.help = "The axis that points up in the file; it is turned to the scene's"})
+            .add("translate", &MeshSurface::translate, {.unit = "m", .help = "Moves it, at last"})
+            .add("rotate_degrees", &MeshSurface::rotate_degrees,
+                 {.unit = "degrees", .help = "Turns it about its origin: around x, then y, then z"})
+            .add("scale", &MeshSurface::scale,
+                 {.help = "Scales it about its origin, at first", .min = 0, .min_open = true})
+            .add("smooth_degrees", &MeshSurface::smooth_degrees,
+                 {.unit = "degrees",
+                  .help = "Edges at which faces meet at less than this look smooth; 0 for flat "
+                          "faces, without it the normals of the file",
+                  .min = 0,
+                  .max = 180})
+            .flat(&MeshSurface::material, material_table());
+    return table;
+}
+
 }  // namespace
 
 const Variants<SurfaceParams>& surface_variants() {
@@ -150,7 +210,10 @@ const Variants<SurfaceParams>& surface_variants() {
                                 "A solid: its shape, what it does to light and what fills it")
             .add("sphere", sphere_table())
             .add("box", box_table())
-            .add("ground", ground_table());
+            .add("ground", ground_table())
+            .add("rect", rect_table())
+            .add("disc", disc_table())
+            .add("mesh", mesh_table());
     return variants;
 }
 
