@@ -15,7 +15,7 @@
 #include "optics/light_params.h"
 #include "optics/medium_params.h"
 #include "optics/placed_media.h"
-#include "optics/surface.h"
+#include "optics/surface_params.h"
 #include "render/method.h"
 #include "render/params.h"
 #include "scene/file_source.h"
