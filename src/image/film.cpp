@@ -14,9 +14,13 @@
 namespace gischt {
 namespace {
 
-bool is_finite(const FilmSample& s) {
-    return std::isfinite(s.radiance.x) && std::isfinite(s.radiance.y) &&
-           std::isfinite(s.radiance.z) && std::isfinite(s.alpha) && std::isfinite(s.weight);
+constexpr std::int64_t most_samples = 1 << 24;  // of a pixel: what an ExactSum holds
+
+bool is_countable(const FilmSample& s, std::span<const float> extra) {
+    auto fits = [](float v) { return ExactSum::fits(static_cast<double>(v)); };
+    return fits(s.radiance.x) && fits(s.radiance.y) && fits(s.radiance.z) && fits(s.alpha) &&
+           (fits(s.depth) || (std::isinf(s.depth) && s.depth > 0)) &&
+           std::all_of(extra.begin(), extra.end(), fits);
 }
 
 }  // namespace
@@ -37,27 +41,27 @@ Film::Film(int width, int height, ReconstructionFilter filter, std::vector<std::
 void Film::add(int x, int y, const FilmSample& sample, std::span<const float> extra) {
     GISCHT_ASSERT(x >= 0 && y >= 0 && x < width_ && y < height_);
     GISCHT_ASSERT(extra.size() == extra_names_.size());
-    Pixel& p = pixels_[index(x, y)];
+    GISCHT_ASSERT(std::abs(sample.weight) <= 1);
+    FilmPixel& p = pixels_[index(x, y)];
     ++p.count;
-    if (!is_finite(sample)) {
+    const double w = sample.weight;
+    p.weight.add(w);
+    if (!is_countable(sample, extra)) {
         ++p.rejected;
-        p.weight += std::isfinite(sample.weight) ? sample.weight : 1;
         return;
     }
-    const double w = sample.weight;
     const Vec3d radiance(sample.radiance);
-    p.radiance += w * radiance;
-    p.alpha += w * sample.alpha;
-    p.weight += w;
+    for (int c = 0; c < 3; ++c) p.radiance[c].add(w * radiance[c]);
+    p.alpha.add(w * sample.alpha);
     const double y709 = gischt::luminance(radiance);
-    p.luminance += y709;
-    p.luminance_2 += y709 * y709;
+    p.luminance.add(y709);
+    p.luminance_2.add(y709 * y709);
     if (std::isfinite(sample.depth)) {
-        p.depth += sample.depth;
+        p.depth.add(sample.depth);
         ++p.hits;
     }
-    double* sums = extra_.data() + index(x, y) * extra.size();
-    for (std::size_t i = 0; i < extra.size(); ++i) sums[i] += w * extra[i];
+    ExactSum* sums = extra_.data() + index(x, y) * extra.size();
+    for (std::size_t i = 0; i < extra.size(); ++i) sums[i].add(w * extra[i]);
 }
 
 void Film::merge(const Film& other) {
@@ -67,56 +71,72 @@ void Film::merge(const Film& other) {
                                 other.width_, other.height_, width_, height_));
     }
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        Pixel& p = pixels_[i];
-        const Pixel& q = other.pixels_[i];
-        p.radiance += q.radiance;
-        p.alpha += q.alpha;
-        p.weight += q.weight;
-        p.luminance += q.luminance;
-        p.luminance_2 += q.luminance_2;
-        p.depth += q.depth;
+        if (std::int64_t{pixels_[i].count} + other.pixels_[i].count > most_samples) {
+            throw Error(ErrorKind::Input, "film", "a pixel would get more than 2^24 samples");
+        }
+    }
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        FilmPixel& p = pixels_[i];
+        const FilmPixel& q = other.pixels_[i];
+        for (int c = 0; c < 3; ++c) p.radiance[c].add(q.radiance[c]);
+        p.alpha.add(q.alpha);
+        p.weight.add(q.weight);
+        p.luminance.add(q.luminance);
+        p.depth.add(q.depth);
+        p.luminance_2.add(q.luminance_2);
         p.hits += q.hits;
         p.count += q.count;
         p.rejected += q.rejected;
     }
-    for (std::size_t i = 0; i < extra_.size(); ++i) extra_[i] += other.extra_[i];
+    for (std::size_t i = 0; i < extra_.size(); ++i) extra_[i].add(other.extra_[i]);
 }
 
 void Film::clear() {
-    pixels_.assign(pixels_.size(), Pixel{});
-    extra_.assign(extra_.size(), 0.0);
+    pixels_.assign(pixels_.size(), FilmPixel{});
+    extra_.assign(extra_.size(), ExactSum{});
 }
 
 std::int64_t Film::total_samples() const {
     std::int64_t sum = 0;
-    for (const Pixel& p : pixels_) sum += p.count;
+    for (const FilmPixel& p : pixels_) sum += p.count;
     return sum;
 }
 
 std::int64_t Film::rejected() const {
     std::int64_t sum = 0;
-    for (const Pixel& p : pixels_) sum += p.rejected;
+    for (const FilmPixel& p : pixels_) sum += p.rejected;
     return sum;
 }
 
 // The sum of the weights makes a constant radiance exact. With negative weights and few samples it
 // can come near zero; then its expectation takes its place, which is noisier but harmless.
-double Film::divisor(const Pixel& p) const {
-    const double expected = p.count * filter_.mean_weight();
-    return p.weight >= 0.5 * expected ? p.weight : expected;
+double Film::divisor(const FilmPixel& p) const {
+    const double expected = p.count * filter_.mean_weight(), weight = p.weight.value();
+    return weight >= 0.5 * expected ? weight : expected;
+}
+
+double Film::mean_of(const FilmPixel& p) const {
+    if (p.count == 0) return 0;
+    const Vec3d sum(p.radiance[0].value(), p.radiance[1].value(), p.radiance[2].value());
+    return gischt::luminance(sum) / divisor(p);
 }
 
 // Mean m = sum(w y) / sum(w): its variance by linearization is n/(n-1) sum((w (y - m))^2) /
 // sum(w)^2 (Cochran 1977, section 2.11), and w^2 = 1.
-double Film::variance_of(const Pixel& p) const {
+double Film::variance_of(const FilmPixel& p) const {
     if (p.count < 2) return 0;
-    const double n = p.count, w = divisor(p), m = gischt::luminance(p.radiance) / w;
-    const double squares = std::max(0.0, p.luminance_2 - 2 * m * p.luminance + n * m * m);
+    const double n = p.count, w = divisor(p), m = mean_of(p);
+    const double squares =
+        std::max(0.0, p.luminance_2.value() - 2 * m * p.luminance.value() + n * m * m);
     return n / (n - 1) * squares / (w * w);
 }
 
 double Film::variance(int x, int y) const {
     return variance_of(pixel(x, y));
+}
+
+double Film::mean_luminance(int x, int y) const {
+    return mean_of(pixel(x, y));
 }
 
 double Film::noise() const {
@@ -126,11 +146,11 @@ double Film::noise() const {
     parallel_for(height_, 16, [&](int y) {
         const auto row = static_cast<std::size_t>(y);
         for (int x = 0; x < width_; ++x) {
-            const Pixel& p = pixel(x, y);
+            const FilmPixel& p = pixel(x, y);
             if (p.count < 2) continue;
             known[row] += 1;
             variances[row] += variance_of(p);
-            means[row] += gischt::luminance(p.radiance) / divisor(p);
+            means[row] += mean_of(p);
         }
     });
     const double count = tree_sum(known), mean = tree_sum(means);
@@ -148,16 +168,17 @@ Image Film::image() const {
     parallel_for(height_, 16, [&](int y) {
         for (int x = 0; x < width_; ++x) {
             const std::size_t i = index(x, y), extras = extra_names_.size();
-            const Pixel& p = pixels_[i];
+            const FilmPixel& p = pixels_[i];
             const double scale = p.count > 0 ? 1 / divisor(p) : 0;
             for (int c = 0; c < 3; ++c) {
-                value(static_cast<std::size_t>(c), i) = static_cast<float>(p.radiance[c] * scale);
+                value(static_cast<std::size_t>(c), i) =
+                    static_cast<float>(p.radiance[c].value() * scale);
             }
-            value(3, i) = static_cast<float>(p.alpha * scale);
-            value(4, i) = p.hits > 0 ? static_cast<float>(p.depth / p.hits)
+            value(3, i) = static_cast<float>(p.alpha.value() * scale);
+            value(4, i) = p.hits > 0 ? static_cast<float>(p.depth.value() / p.hits)
                                      : std::numeric_limits<float>::infinity();
             for (std::size_t e = 0; e < extras; ++e) {
-                value(5 + e, i) = static_cast<float>(extra_[i * extras + e] * scale);
+                value(5 + e, i) = static_cast<float>(extra_[i * extras + e].value() * scale);
             }
         }
     });

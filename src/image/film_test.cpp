@@ -115,5 +115,73 @@ TEST(Film, RejectsWhatIsNotFiniteAndSaysSo) {
     EXPECT_EQ(image.channel("R")[0], 1);
 }
 
+// Values over 18 orders of magnitude, whose sum in double depends on the order.
+TEST(Film, AnySplitAndOrderGivesTheSameBits) {
+    const int size = 6, n = 200;
+    auto add = [&](Film& film, int p, int s) {
+        const std::uint64_t key =
+            random_key(3, static_cast<std::uint64_t>(p), static_cast<std::uint64_t>(s));
+        auto value = [&](std::uint32_t d) {
+            return std::exp(20 * random_uniform(key, d)) * random_uniform(key, 20 + d) - 1e-9f;
+        };
+        const float extra[] = {value(5), -value(6)};
+        film.add(p % size, p / size,
+                 {{value(0), value(1), value(2)},
+                  random_uniform(key, 3),
+                  random_uniform(key, 7) < 0.2f ? std::numeric_limits<float>::infinity() : value(4),
+                  random_uniform(key, 8) < 0.1f ? -1.0f : 1.0f},
+                 extra);
+    };
+    const ReconstructionFilter mitchell(FilterKind::Mitchell);
+    const std::vector<std::string> names{"direct.R", "motion.X"};
+    Film whole(size, size, mitchell, names);
+    for (int s = 0; s < n; ++s) {
+        for (int p = 0; p < size * size; ++p) add(whole, p, s);
+    }
+    for (std::uint64_t trial = 0; trial < 4; ++trial) {
+        std::vector<Film> parts(5, Film(size, size, mitchell, names));
+        for (int p = 0; p < size * size; ++p) {
+            for (int i = 0; i < n; ++i) {
+                const int s = (i * 73 + static_cast<int>(trial) * 31) % n;  // 73, 200: coprime
+                const auto part = random_bits(random_key(trial, static_cast<std::uint64_t>(s)), 0);
+                add(parts[part % 5], p, s);
+            }
+        }
+        for (std::size_t i = 1; i < 5; ++i) parts[0].merge(parts[i]);
+        EXPECT_EQ(parts[0].image(), whole.image());
+        EXPECT_EQ(parts[0].noise(), whole.noise());
+        for (int p = 0; p < size * size; ++p) {
+            EXPECT_EQ(parts[0].variance(p % size, p / size), whole.variance(p % size, p / size));
+        }
+    }
+}
+
+TEST(Film, RejectsWhatItsSumsCannotHold) {
+    Film film(1, 1, ReconstructionFilter(FilterKind::Box), {"albedo.R"});
+    const float one[] = {1}, large[] = {1e15f};
+    film.add(0, 0, {Vec3f(1e11f)}, one);
+    film.add(0, 0, {Vec3f(1e12f)}, one);
+    film.add(0, 0, {Vec3f(1)}, large);
+    film.add(0, 0, {Vec3f(1), 1, -std::numeric_limits<float>::infinity()}, one);
+    EXPECT_EQ(film.rejected(), 3);
+    const Image image = film.image();
+    EXPECT_FLOAT_EQ(image.channel("R")[0], 0.25e11f);
+    EXPECT_FLOAT_EQ(image.channel("albedo.R")[0], 0.25f);
+}
+
+// Squares of dark and of bright pictures keep their variance: uniform numbers in [0, scale).
+TEST(Film, NoiseDoesNotDependOnTheScaleOfTheLight) {
+    double at_one = 0;
+    for (const float scale : {1.0f, 0x1p-24f, 0x1p36f}) {
+        Film film(1, 1, ReconstructionFilter(FilterKind::Box));
+        for (std::uint32_t s = 0; s < 1000; ++s) {
+            film.add(0, 0, {Vec3f(scale * random_uniform(random_key(2), s))});
+        }
+        if (scale == 1) at_one = film.noise();
+        // 2^-64 cut from each square, against 2^-48 / 12 of variance.
+        EXPECT_NEAR(film.noise(), at_one, 1e-4 * at_one);
+    }
+}
+
 }  // namespace
 }  // namespace gischt

@@ -73,7 +73,7 @@ Camera::Camera(const CameraParams& params, double time, int width, int height,
                  : 0.5 * params.height.at(time);
 }
 
-Ray Camera::ray(double x, double y) const {
+Ray Camera::ray(double x, double y, Vec2f, double) const {
     const double to_plane = 2 * scale_ / height_;
     const Vec3d offset =
         (x - 0.5 * width_) * to_plane * right_ + (0.5 * height_ - y) * to_plane * up_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "grid/cell_crossings.h"
 #include "optics/medium_pack.h"
 
 namespace gischt {
@@ -222,6 +223,15 @@ void Medium::densities(const MediumSegment& segment, std::span<const float> t, f
     density_.along(segment.brick, segment.entry, segment.step, t.data(), static_cast<int>(t.size()),
                    out);
     for (std::size_t i = 0; i < t.size(); ++i) out[i] *= density_scale_;
+}
+
+int Medium::cell_crossings_of(const MediumSegment& segment, float begin, float end,
+                              std::span<float> out) const {
+    if (segment.brick < 0) return 0;
+    const int n =
+        cell_crossings(segment.entry + begin * segment.step, segment.step, end - begin, out);
+    for (int i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] += begin;
+    return n;
 }
 
 void Medium::emissions(const MediumSegment& segment, std::span<const float> t, const float* density,

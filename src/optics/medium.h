@@ -61,6 +61,9 @@ struct Region {
 
 class SegmentWalk;
 
+// Of a segment: a brick's diagonal crosses 21 planes.
+inline constexpr std::size_t most_cell_crossings = 32;
+
 // A participating medium at one moment: extinction, scattering, emission and a phase function as
 // functions of the place. The coefficients are a scalar density(x) >= 0 times constant cross
 // sections; where has_color(), a colour in [0,1] multiplies the scattering and what it takes is
@@ -127,6 +130,10 @@ class Medium {
     SegmentWalk segments(const Ray& ray, BrickGrain grain = BrickGrain::Blocks) const;
     // Density at anchor + t[i], which must lie in the segment.
     void densities(const MediumSegment& segment, std::span<const float> t, float* out) const;
+    // The t in ]begin, end[ of a segment at which the density passes from one interpolation cell to
+    // the next; between them it is a cubic polynomial of t. `out` holds most_cell_crossings.
+    int cell_crossings_of(const MediumSegment& segment, float begin, float end,
+                          std::span<float> out) const;
     // Emission a L_e in W/(m^3 sr) at the same places, `density` being what densities() gave.
     void emissions(const MediumSegment& segment, std::span<const float> t, const float* density,
                    Vec3f* out) const;

@@ -15,7 +15,7 @@
 #include "optics/light_params.h"
 #include "optics/medium_params.h"
 #include "optics/placed_media.h"
-#include "optics/surface.h"
+#include "optics/surface_params.h"
 #include "render/method.h"
 #include "render/params.h"
 #include "scene/file_source.h"
@@ -53,8 +53,8 @@ struct FilmParams {
     ToneKind tone = ToneKind::Filmic;
     FilterKind filter = FilterKind::BlackmanHarris;
     double filter_radius = 0;  // pixels; 0: the filter's own
-    double shutter =
-        0;  // share of a frame that the film is exposed; used by methods with motion blur
+    double shutter = 0;        // share of a frame that the film is exposed, centred on its moment
+    std::vector<std::string> aovs;  // further layers of an EXR, see render/aov.h
 };
 
 struct RenderSection {

@@ -72,14 +72,14 @@ Vec3d axis_angle_degrees(const Vec3d& euler) {
 struct SolidOf {
     Vec3d up;
 
-    SolidParams operator()(const SphereSurface& s) const {
+    std::optional<SolidParams> operator()(const SphereSurface& s) const {
         SolidParams p;
         p.kind = SolidKind::Sphere;
         p.position = s.center;
         p.radius = s.radius;
         return p;
     }
-    SolidParams operator()(const BoxSurface& s) const {
+    std::optional<SolidParams> operator()(const BoxSurface& s) const {
         SolidParams p;
         p.kind = SolidKind::Box;
         p.position = s.center;
@@ -88,14 +88,21 @@ struct SolidOf {
         for (Vec3d& v : p.rotation.v) v = axis_angle_degrees(v);
         return p;
     }
-    SolidParams operator()(const GroundSurface& s) const {
+    std::optional<SolidParams> operator()(const GroundSurface& s) const {
         SolidParams p;
         p.kind = SolidKind::Plane;
         p.position = s.point;
         p.normal = s.normal ? normalize(*s.normal) : up;
         return p;
     }
+    std::optional<SolidParams> operator()(const SheetPlace&) const { return std::nullopt; }
+    std::optional<SolidParams> operator()(const MeshSurface&) const { return std::nullopt; }
 };
+
+// What stands in the way of a simulated fluid; sheets have no inside that could.
+std::optional<SolidParams> solid_of(const SurfaceParams& s, const Vec3d& up) {
+    return std::visit(SolidOf{up}, s);
+}
 
 struct SourceOf {
     const Scene& scene;
@@ -105,7 +112,7 @@ struct SourceOf {
         world.fps = scene.fps;
         world.gravity = scene.gravity_vector();
         for (const SurfaceParams& s : scene.solids) {
-            world.solids.push_back(std::visit(SolidOf{scene.up_vector()}, s));
+            if (const auto solid = solid_of(s, scene.up_vector())) world.solids.push_back(*solid);
         }
         return std::make_unique<SmokeSource>(f.source, world);
     }

@@ -10,6 +10,7 @@
 #include "math/quadrature.h"
 #include "optics/environment.h"
 #include "optics/local_lights.h"
+#include "optics/surface_params.h"
 #include "render/march/ray_march.h"
 #include "render/march/sky_directions.h"
 
@@ -96,7 +97,8 @@ Vec3d radiance(const View& view, const MarchParams& params, const Ray& ray, int 
     RayMarcher marcher(scene);
     Vec3d sum;
     for (int s = 0; s < samples; ++s) {
-        sum += Vec3d(marcher(ray, {random_key(5), static_cast<std::uint32_t>(s)}).radiance);
+        sum +=
+            Vec3d(marcher(ray, PixelSampler(5, 1, 0, 0, static_cast<std::uint32_t>(s))).radiance);
     }
     return sum / Vec3d(samples);
 }

@@ -5,17 +5,18 @@
 #include <cmath>
 
 #include "image/color.h"
+#include "math/fast_math.h"
 #include "optics/environment.h"
-#include "render/march/fast_math.h"
+#include "render/progressive.h"
 
 namespace gischt {
 namespace {
 
-// Dimensions of a sample; the filter takes 0.
+// Dimensions of a sample.
 enum : std::uint32_t {
-    DimensionJitter = 1,
-    DimensionSun = 2,
-    DimensionSky = 3,
+    DimensionJitter = SampleDimension::Free,
+    DimensionSun,
+    DimensionSky,
     DimensionStep = 16
 };
 
@@ -68,7 +69,7 @@ RayMarcher::RayMarcher(const MarchScene& scene) : scene_(scene) {
 
 // The phase functions towards lights at infinity are the same all along the ray, and one point of
 // the sun's disc stands for it.
-void RayMarcher::prepare_lights(const Ray& ray, const MarchSampler& sampler) {
+void RayMarcher::prepare_lights(const Ray& ray, const PixelSampler& sampler) {
     const Vec3d forward = normalize(ray.direction);
     for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
         if (!scene_.narrow[l].is_infinite) continue;
@@ -83,12 +84,12 @@ void RayMarcher::prepare_lights(const Ray& ray, const MarchSampler& sampler) {
     }
 }
 
-MarchedRay RayMarcher::operator()(const Ray& camera_ray, const MarchSampler& sampler) {
+MarchedRay RayMarcher::operator()(const Ray& camera_ray, const PixelSampler& sampler) {
     result_ = {};
     step_ = 0;
     ++rays;
     Ray ray = camera_ray;
-    const auto hit = scene_.view.surfaces.intersect(ray);
+    const auto hit = scene_.view.surfaces.intersect(ray, 0.5f, RayKind::Camera);
     if (hit) ray.t_max = hit->t;
     prepare_lights(ray, sampler);
 
@@ -128,7 +129,7 @@ MarchedRay RayMarcher::operator()(const Ray& camera_ray, const MarchSampler& sam
 }
 
 // Equal steps, jittered together: short enough for the voxels and for the optical depth.
-void RayMarcher::march_interval(const Ray& ray, double t0, double t1, const MarchSampler& sampler) {
+void RayMarcher::march_interval(const Ray& ray, double t0, double t1, const PixelSampler& sampler) {
     const double metres = (t1 - t0) * length(ray.direction);
     double steps = 1, majorant = 0;
     bool is_visible = false, is_plain = true;
@@ -161,7 +162,7 @@ void RayMarcher::march_interval(const Ray& ray, double t0, double t1, const Marc
 
 // Up to 16 steps of `length` metres: eq. 19.
 void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float length,
-                             const MarchSampler& sampler) {
+                             const PixelSampler& sampler) {
     std::array<float, batch> local;
     for (Walker& w : walkers_) {
         if (!w.is_active) continue;
@@ -214,7 +215,7 @@ void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float le
 
 // Sum over the lights of radiance times phase function, per scattering coefficient.
 Vec3f RayMarcher::in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
-                               const MarchSampler& sampler) {
+                               const PixelSampler& sampler) {
     if (max_component(scene_.media[medium].scattering) == 0) return {};
     Vec3f sum = from_broad(medium, ray, point, sampler);
     for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
@@ -257,7 +258,7 @@ Vec3f RayMarcher::from_narrow(std::size_t medium, std::size_t light, const Ray& 
 // Directions drawn from the light and from the phase function, weighed by the balance heuristic
 // (Veach & Guibas 1995).
 Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
-                             const MarchSampler& sampler) {
+                             const PixelSampler& sampler) {
     const MarchMedium& m = scene_.media[medium];
     if (m.sky) return (*m.sky)(point);
     const Vec3d forward = normalize(ray.direction);
@@ -306,7 +307,7 @@ Vec3f RayMarcher::through_media(const Ray& ray, double step) {
 }
 
 // Lambert reflection of all lights, each seen through the media.
-Vec3f RayMarcher::shade(const SurfaceHit& hit, const MarchSampler& sampler) {
+Vec3f RayMarcher::shade(const SurfaceHit& hit, const PixelSampler& sampler) {
     Vec3f irradiance;
     for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
         const NarrowLight& narrow = scene_.narrow[l];
@@ -327,7 +328,7 @@ Vec3f RayMarcher::shade(const SurfaceHit& hit, const MarchSampler& sampler) {
 // Directions in proportion to the cosine and, where the sky is not the same everywhere, drawn from
 // the light, weighed by the balance heuristic.
 Vec3f RayMarcher::sky_irradiance(const Light& light, const SurfaceHit& hit,
-                                 const MarchSampler& sampler) {
+                                 const PixelSampler& sampler) {
     const bool is_even = dynamic_cast<const ConstantLight*>(&light) != nullptr;
     const int n = scene_.params.sky_samples;
     Vec3d tangent, bitangent;

@@ -5,22 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/random.h"
-#include "math/sobol.h"
+#include "math/pixel_sampler.h"
 #include "render/march/march_scene.h"
 
 namespace gischt {
-
-// The random numbers of one sample of one pixel: Owen-scrambled Sobol points, a fresh scrambling
-// per dimension.
-struct MarchSampler {
-    std::uint64_t key = 0;     // of seed, frame and pixel
-    std::uint32_t sample = 0;  // index in the pixel
-
-    Vec2f two(std::uint32_t dimension) const {
-        return sobol_2d(sample, random_bits(key, dimension));
-    }
-};
 
 // What a camera ray sees.
 struct MarchedRay {
@@ -36,7 +24,7 @@ class RayMarcher {
     explicit RayMarcher(const MarchScene& scene);
 
     // Eq. 19 front to back up to the nearest surface, which is shaded, or to the end of the media.
-    MarchedRay operator()(const Ray& ray, const MarchSampler& sampler);
+    MarchedRay operator()(const Ray& ray, const PixelSampler& sampler);
 
     std::int64_t rays = 0, lookups = 0;
 
@@ -59,17 +47,17 @@ class RayMarcher {
         }
     };
 
-    void prepare_lights(const Ray& ray, const MarchSampler& sampler);
-    void march_interval(const Ray& ray, double t0, double t1, const MarchSampler& sampler);
+    void prepare_lights(const Ray& ray, const PixelSampler& sampler);
+    void march_interval(const Ray& ray, double t0, double t1, const PixelSampler& sampler);
     void march_batch(const Ray& ray, std::span<const double> t, float length,
-                     const MarchSampler& sampler);
+                     const PixelSampler& sampler);
     Vec3f in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
-                       const MarchSampler& sampler);
+                       const PixelSampler& sampler);
     Vec3f from_narrow(std::size_t medium, std::size_t light, const Ray& ray, const Vec3d& point);
     Vec3f from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
-                     const MarchSampler& sampler);
-    Vec3f shade(const SurfaceHit& hit, const MarchSampler& sampler);
-    Vec3f sky_irradiance(const Light& light, const SurfaceHit& hit, const MarchSampler& sampler);
+                     const PixelSampler& sampler);
+    Vec3f shade(const SurfaceHit& hit, const PixelSampler& sampler);
+    Vec3f sky_irradiance(const Light& light, const SurfaceHit& hit, const PixelSampler& sampler);
     Vec3f through_media(const Ray& ray, double step);
 
     const MarchScene& scene_;
