@@ -3,33 +3,7 @@
 
 #include <algorithm>
 
-#include "math/interpolate.h"
-
 namespace gischt {
-namespace {
-
-// Cell and fraction of a local coordinate.
-struct Split {
-    int cell;
-    float fraction;
-};
-Split split(float local) {
-    constexpr float edge = BrickVolume::brick_edge;
-    const float inside = std::min(std::max(local, 0.0f), edge);
-    const int i = std::min(static_cast<int>(inside), BrickVolume::brick_edge - 1);
-    return {i, inside - static_cast<float>(i)};
-}
-
-template <class T>
-float trilinear(const T* s, const Vec3f& f) {
-    constexpr int y = BrickVolume::row, z = y * y;
-    const auto v = [s](int i) { return static_cast<float>(s[i]); };
-    const float a = lerp(lerp(v(0), v(1), f.x), lerp(v(y), v(y + 1), f.x), f.y);
-    const float b = lerp(lerp(v(z), v(z + 1), f.x), lerp(v(z + y), v(z + y + 1), f.x), f.y);
-    return lerp(a, b, f.z);
-}
-
-}  // namespace
 
 std::size_t BrickVolume::bytes() const {
     return compact_.size() * sizeof(std::uint16_t) + full_.size() * sizeof(float) +
@@ -67,16 +41,6 @@ float BrickVolume::at(const Vec3d& q) const {
     const Vec3i b = floor(q * scale);
     const int brick = find(b);
     return brick < 0 ? background_ : at_local(brick, Vec3f(q - Vec3d(b) * double{brick_edge}));
-}
-
-float BrickVolume::at_local(int brick, const Vec3f& local) const {
-    const Split x = split(local.x), y = split(local.y), z = split(local.z);
-    const std::size_t first = static_cast<std::size_t>(brick) * samples +
-                              static_cast<std::size_t>(x.cell + row * (y.cell + row * z.cell));
-    const Vec3f f(x.fraction, y.fraction, z.fraction);
-    if (!is_compact()) return trilinear(full_.data() + first, f);
-    const Vec2f d = decode_[static_cast<std::size_t>(brick)];
-    return d.x + d.y * trilinear(compact_.data() + first, f);
 }
 
 }  // namespace gischt

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "base/job.h"
@@ -126,5 +128,44 @@ class BrickVolume {
     AlignedVector<std::uint16_t> compact_;  // `samples` per brick, x fastest, then y, then z
     AlignedVector<float> full_;
 };
+
+inline float BrickVolume::at_local(int brick, const Vec3f& local) const {
+    // The cell and the place in it.
+    const auto inside = [](float q) { return std::min(std::max(q, 0.0f), float{brick_edge}); };
+    const Vec3f q(inside(local.x), inside(local.y), inside(local.z));
+    const auto cell = [](float v) { return std::min(static_cast<int>(v), brick_edge - 1); };
+    const int i = cell(q.x), j = cell(q.y), k = cell(q.z);
+    const float x = q.x - static_cast<float>(i), y = q.y - static_cast<float>(j),
+                z = q.z - static_cast<float>(k);
+    const std::size_t first = static_cast<std::size_t>(brick) * samples +
+                              static_cast<std::size_t>(i + row * (j + row * k));
+    // The two samples of each of the four rows around it, a row per lane (the vector types that g++
+    // and clang share).
+    using Floats = float __attribute__((vector_size(16)));
+    using Ints = std::int32_t __attribute__((vector_size(16)));
+    constexpr std::size_t above = row, behind = row * row;
+    Floats left, right;
+    if (is_compact()) {
+        const std::uint16_t* s = compact_.data() + first;
+        const auto both = [s](std::size_t at) {
+            std::int32_t codes;
+            std::memcpy(&codes, s + at, sizeof codes);
+            return codes;
+        };
+        const Ints codes{both(0), both(above), both(behind), both(behind + above)};
+        left = __builtin_convertvector(codes & 0xffff, Floats);
+        right = __builtin_convertvector((codes >> 16) & 0xffff, Floats);
+    } else {
+        const float* s = full_.data() + first;
+        left = Floats{s[0], s[above], s[behind], s[behind + above]};
+        right = Floats{s[1], s[above + 1], s[behind + 1], s[behind + above + 1]};
+    }
+    const Floats v = left + (right - left) * x;
+    const float near = v[0] + (v[1] - v[0]) * y, far = v[2] + (v[3] - v[2]) * y;
+    const float value = near + (far - near) * z;
+    if (!is_compact()) return value;
+    const Vec2f d = decode_[static_cast<std::size_t>(brick)];
+    return d.x + d.y * value;
+}
 
 }  // namespace gischt

@@ -129,6 +129,7 @@ bool BrickWalk::next(BrickRun& run) {
     if (grain_ == BrickGrain::Bricks) {
         if (!enter_brick()) return false;
         fill(run, t_, t_leave_);
+        run.block = -1;
         run.bounds = volume_->whole(brick_);
         next_brick();
         return true;
@@ -138,6 +139,7 @@ bool BrickWalk::next(BrickRun& run) {
             const int block = cut_block_[cut_at_];
             if (!(volume_->occupied(brick_) >> block & 1)) continue;
             fill(run, cut_[cut_at_], cut_[cut_at_ + 1]);
+            run.block = block;
             run.bounds = volume_->block(brick_, block);
             ++cut_at_;
             return true;

@@ -14,8 +14,9 @@ struct BrickRun {
     double t0 = 0, t1 = 0;
     BrickVolume::Block bounds;  // minimum, mean and maximum of the interpolant over the block
     int brick = 0;
-    Vec3i coord;  // of the brick
-    Vec3f entry;  // the brick's local coordinates at t0
+    int block = -1;  // of the brick; -1: all of it
+    Vec3i coord;     // of the brick
+    Vec3f entry;     // the brick's local coordinates at t0
 };
 
 // Blocks: 4^3 cells, tight bounds. Bricks: 8^3 cells, half as many runs.

@@ -45,6 +45,9 @@ class PixelSampler {
     // 0 <= x, y < 65536.
     PixelSampler(std::uint64_t seed, int frame, int x, int y, std::uint32_t index);
 
+    // Sample i of `count` that a sample splits into: stratified together with all of theirs.
+    PixelSampler part(std::uint32_t count, std::uint32_t i) const;
+
     float one(std::uint32_t dimension) const {
         return dimension < stratified_dimensions ? stratified_one(dimension) : hashed(dimension).x;
     }
@@ -52,8 +55,9 @@ class PixelSampler {
         return dimension < stratified_dimensions ? stratified_two(dimension) : hashed(dimension);
     }
     // For decisions of unbounded number, such as the collisions of a flight.
-    HashStream stream(std::uint32_t dimension) const {
-        return HashStream(key_ ^ mix64(0x632be59bd9b4e019ULL + dimension));
+    HashStream stream(std::uint32_t dimension) const { return HashStream(stream_key(dimension)); }
+    std::uint64_t stream_key(std::uint32_t dimension) const {
+        return key_ ^ mix64(0x632be59bd9b4e019ULL + dimension);
     }
 
   private:

@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "grid/cell_crossings.h"
 #include "grid/resample.h"
 
 namespace gischt {
@@ -38,20 +40,19 @@ Transform Region::to_world() const {
 
 Medium::Medium(const Frame& frame, const MediumParams& params, double time, Job& job) {
     take(params, time);
-    Bricks& b = kind_.emplace<Bricks>();
     const Field* density = frame.find(params.density_field);
     const Transform* lattice = density ? &density->to_world : nullptr;
+    const bool flame = emission_ == EmissionKind::Flame;
     if (is_emissive()) {
-        const bool flame = emission_ == EmissionKind::Flame;
-        b.glow = pack(frame, params.emission_field.value_or(flame ? "flame" : "temperature"),
-                      {.non_negative = flame}, lattice, job);
+        glow_ = pack(frame, params.emission_field.value_or(flame ? "flame" : "temperature"),
+                     {.non_negative = flame}, lattice, job);
+        glow_elsewhere_ = glow_.background();
     }
-    b.density =
-        pack(frame, params.density_field,
-             {.non_negative = true, .also = emission_ == EmissionKind::Flame ? &*b.glow : nullptr},
-             lattice, job);
-    majorant_ = strength_ * density_scale_ * b.density.max();
-    if (b.density.size() > 0) cell_size_ = b.density.cell_size();
+    density_ = pack(frame, params.density_field,
+                    {.non_negative = true, .also = flame ? &glow_ : nullptr}, lattice, job);
+    majorant_ = strength_ * density_scale_ * density_.max();
+    if (density_.size() > 0) cell_size_ = density_.cell_size();
+    if (is_emissive()) bound_emission();
 }
 
 Medium::Medium(const Region& region, const MediumParams& params, double time, double temperature) {
@@ -64,9 +65,30 @@ Medium::Medium(const Region& region, const MediumParams& params, double time, do
         throw Error(ErrorKind::Usage, "medium", "emission 'flame' needs a frame with that field",
                     "take 'blackbody'");
     }
-    const Transform to_world = region.to_world();
-    kind_ = Homogeneous{region.kind, to_world, to_world.inverse(), static_cast<float>(temperature)};
+    shape_ = region.kind == Region::Kind::Box         ? Shape::Box
+             : region.kind == Region::Kind::Ellipsoid ? Shape::Ellipsoid
+                                                      : Shape::Everywhere;
+    if (is_emissive() && !is_bounded()) {
+        throw Error(ErrorKind::Usage, "medium", "what fills all of space cannot glow",
+                    "give it a box or a sphere");
+    }
+    to_world_ = region.to_world();
+    to_unit_ = to_world_.inverse();
+    glow_elsewhere_ = static_cast<float>(temperature);
     majorant_ = strength_ * density_scale_;
+    if (is_emissive()) {
+        emission_majorant_ = emission_bound(density_scale_, glow_elsewhere_, glow_elsewhere_);
+    }
+}
+
+Medium::Medium(const Layer& layer, const MediumParams& params, double time) {
+    take(params, time);
+    if (is_emissive()) {
+        throw Error(ErrorKind::Usage, "medium", "a layer cannot glow", "take emission 'none'");
+    }
+    shape_ = Shape::Layered;
+    layer_ = layer;
+    majorant_ = strength_ * density_scale_ * static_cast<float>(layer.greatest_density());
 }
 
 void Medium::take(const MediumParams& params, double time) {
@@ -76,7 +98,8 @@ void Medium::take(const MediumParams& params, double time) {
         const Vec3d extinction = params.extinction.at(time), albedo = params.albedo.at(time);
         cross_sections_ = {Vec3f(extinction * (Vec3d(1) - albedo)), Vec3f(extinction * albedo)};
     }
-    phase_ = make_phase(params.phase, params.g.at(time));
+    phase_ = make_phase(
+        {params.phase, params.g.at(time), params.g2, params.lobe_weight, params.droplet_diameter});
     multiple_scattering_ = params.multiple_scattering;
     density_scale_ = static_cast<float>(params.density_scale.at(time));
     strength_ = max_component(cross_sections_.extinction());
@@ -114,48 +137,79 @@ BrickVolume Medium::pack(const Frame& frame, const std::string& name, const Bric
 }
 
 Box3d Medium::bounds() const {
-    if (const Bricks* b = std::get_if<Bricks>(&kind_)) return b->density.world_bounds();
-    return std::get<Homogeneous>(kind_).to_world.bounds(unit_box);
+    if (shape_ == Shape::Bricks) return density_.world_bounds();
+    if (layer_) return layer_->bounds();
+    if (is_bounded()) return to_world_.bounds(unit_box);
+    constexpr double never = std::numeric_limits<double>::infinity();
+    return {Vec3d(-never), Vec3d(never)};
 }
 
 Medium::Lattice Medium::lattice() const {
-    if (const Bricks* b = std::get_if<Bricks>(&kind_)) {
-        const Box3i& support = b->density.support();
-        return {b->density.to_world(), {Vec3d(support.lo), Vec3d(support.hi)}};
+    if (shape_ == Shape::Bricks) {
+        const Box3i& support = density_.support();
+        return {density_.to_world(), {Vec3d(support.lo), Vec3d(support.hi)}};
     }
+    GISCHT_ASSERT(has_lattice());
     const Box3d box = bounds();
     const double h = max_component(box.size()) / 64;
     return {Transform::scale_translate(h, box.lo), {{}, box.size() / Vec3d(h)}};
 }
 
 float Medium::density(const Vec3d& point) const {
-    if (const Bricks* b = std::get_if<Bricks>(&kind_)) {
-        return density_scale_ * b->density.sample(point);
-    }
-    const Homogeneous& solid = std::get<Homogeneous>(kind_);
-    const Vec3d p = solid.to_unit.point(point);
-    const bool inside =
-        solid.shape == Region::Kind::Box ? max_component(abs(p)) <= 1 : dot(p, p) <= 1;
-    return inside ? density_scale_ : 0.0f;
+    if (shape_ == Shape::Bricks) return density_scale_ * density_.sample(point);
+    if (layer_) return density_scale_ * static_cast<float>(layer_->density(point));
+    const Vec3d p = to_unit_.point(point);
+    const bool is_inside = shape_ == Shape::Box         ? max_component(abs(p)) <= 1
+                           : shape_ == Shape::Ellipsoid ? dot(p, p) <= 1
+                                                        : true;
+    return is_inside ? density_scale_ : 0.0f;
 }
 
 MediumPoint Medium::at(const Vec3d& point) const {
     const float d = density(point);
     MediumPoint p{d * cross_sections_.absorption, d * cross_sections_.scattering, {}};
     if (is_emissive()) {
-        const Bricks* b = std::get_if<Bricks>(&kind_);
-        p.emission = glow(d, b ? b->glow->sample(point) : std::get<Homogeneous>(kind_).temperature);
+        p.emission = glow(d, shape_ == Shape::Bricks ? glow_.sample(point) : glow_elsewhere_);
     }
     return p;
 }
 
 // Emission by the value of the temperature or flame field.
 Vec3f Medium::glow(float density, float value) const {
+    const bool flame = emission_ == EmissionKind::Flame;
+    if ((flame ? value : density) == 0) return {};
     const float kelvin =
         temperature_range_.x + (temperature_range_.y - temperature_range_.x) * value;
     const Vec3f radiance = emission_scale_ * blackbody_->radiance(kelvin);
-    if (emission_ == EmissionKind::Flame) return value * radiance;
-    return density * cross_sections_.absorption * radiance;
+    return flame ? value * radiance : density * cross_sections_.absorption * radiance;
+}
+
+// Bound of glow() for densities up to `density` and values in [least, most], between which the
+// temperature is linear and the radiance grows with it.
+float Medium::emission_bound(float density, float least, float most) const {
+    const float cold = max_component(glow(density, least));
+    float bound = std::max(cold, max_component(glow(density, most)));
+    if (emission_ == EmissionKind::Flame && least > 0) bound = std::max(bound, cold / least * most);
+    return bound * (1 + 1e-5f);  // of the rounding on the way
+}
+
+void Medium::bound_emission() {
+    emission_bounds_.resize(static_cast<std::size_t>(density_.size()) * bounds_per_brick);
+    for (int brick = 0; brick < density_.size(); ++brick) {
+        const int other = glow_.find(density_.coord(brick));
+        float* bounds = &emission_bounds_[static_cast<std::size_t>(brick) * bounds_per_brick];
+        for (int b = 0; b < BrickVolume::brick_blocks; ++b) {
+            if (!(density_.occupied(brick) >> b & 1)) continue;
+            const float none = glow_elsewhere_;
+            const BrickVolume::Block value =
+                other < 0 ? BrickVolume::Block{none, none, none} : glow_.block(other, b);
+            bounds[b] =
+                emission_bound(density_scale_ * density_.block(brick, b).max, value.min, value.max);
+            float& whole = bounds[BrickVolume::brick_blocks];
+            whole = std::max(whole, bounds[b]);
+            emission_majorant_ = std::max(emission_majorant_, bounds[b]);
+        }
+    }
 }
 
 SegmentWalk Medium::segments(const Ray& ray, BrickGrain grain) const {
@@ -163,51 +217,70 @@ SegmentWalk Medium::segments(const Ray& ray, BrickGrain grain) const {
 }
 
 void Medium::densities(const MediumSegment& segment, std::span<const float> t, float* out) const {
-    if (const Bricks* b = std::get_if<Bricks>(&kind_)) {
-        b->density.along(segment.brick, segment.entry, segment.step, t.data(),
-                         static_cast<int>(t.size()), out);
-        for (std::size_t i = 0; i < t.size(); ++i) out[i] *= density_scale_;
-    } else {
-        std::fill_n(out, t.size(), density_scale_);
+    if (segment.brick < 0) {
+        for (std::size_t i = 0; i < t.size(); ++i) out[i] = density_at(segment, t[i]);
+        return;
     }
+    density_.along(segment.brick, segment.entry, segment.step, t.data(), static_cast<int>(t.size()),
+                   out);
+    for (std::size_t i = 0; i < t.size(); ++i) out[i] *= density_scale_;
+}
+
+int Medium::cell_crossings_of(const MediumSegment& segment, float begin, float end,
+                              std::span<float> out) const {
+    if (segment.brick < 0) return 0;
+    const int n =
+        cell_crossings(segment.entry + begin * segment.step, segment.step, end - begin, out);
+    for (int i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] += begin;
+    return n;
 }
 
 void Medium::emissions(const MediumSegment& segment, std::span<const float> t, const float* density,
                        Vec3f* out) const {
-    const Bricks* b = std::get_if<Bricks>(&kind_);
-    if (!is_emissive() || !b) {
-        const float value = b ? 0 : std::get<Homogeneous>(kind_).temperature;
-        for (std::size_t i = 0; i < t.size(); ++i) {
-            out[i] = is_emissive() ? glow(density[i], value) : Vec3f{};
-        }
-        return;
+    for (std::size_t i = 0; i < t.size(); ++i) out[i] = emission_at(segment, t[i], density[i]);
+}
+
+std::optional<float> Medium::optical_depth(const Ray& ray, double t0, double t1) const {
+    if (shape_ == Shape::Bricks) return std::nullopt;
+    if (layer_) {
+        if (majorant_ == 0) return 0.0f;
+        return strength_ * density_scale_ *
+               static_cast<float>(layer_->column({ray.origin, ray.direction, t0, t1}));
     }
-    const int brick = b->glow->find(segment.coord);
-    for (std::size_t i = 0; i < t.size(); ++i) {
-        const float value = brick < 0
-                                ? b->glow->background()
-                                : b->glow->at_local(brick, segment.entry + t[i] * segment.step);
-        out[i] = glow(density[i], value);
-    }
+    const Interval t = inside({ray.origin, ray.direction, t0, t1});
+    if (t.is_empty() || majorant_ == 0) return 0.0f;
+    return static_cast<float>((t.t1 - t.t0) * length(ray.direction) *
+                              static_cast<double>(majorant_));
+}
+
+// The part of a ray inside the region.
+Interval Medium::inside(const Ray& ray) const {
+    if (shape_ == Shape::Everywhere) return {ray.t_min, ray.t_max};
+    const Ray unit{to_unit_.point(ray.origin), to_unit_.vector(ray.direction), ray.t_min,
+                   ray.t_max};
+    return shape_ == Shape::Box ? clip(unit, unit_box) : clip_to_ball(unit);
 }
 
 SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain)
     : medium_(&medium) {
-    if (const auto* b = std::get_if<Medium::Bricks>(&medium.kind_)) {
-        bricks_.emplace(b->density, ray, grain);
+    if (medium.shape_ == Medium::Shape::Bricks) {
+        bricks_.emplace(medium.density_, ray, grain);
         return;
     }
-    const auto& solid = std::get<Medium::Homogeneous>(medium.kind_);
-    const Ray unit{solid.to_unit.point(ray.origin), solid.to_unit.vector(ray.direction), ray.t_min,
-                   ray.t_max};
-    const Interval t = solid.shape == Region::Kind::Box ? clip(unit, unit_box) : clip_to_ball(unit);
+    if (medium.layer_) {
+        layer_.emplace(*medium.layer_, ray);
+        return;
+    }
+    const Interval t = medium.inside(ray);
     done_ = t.is_empty();
     once_.t0 = once_.anchor = t.t0;
     once_.t1 = t.t1;
     once_.min = once_.mean = once_.max = medium.majorant_;
+    once_.emission_max = medium.emission_majorant_;
 }
 
 bool SegmentWalk::next(MediumSegment& segment) {
+    if (layer_) return next_of_layer(segment);
     if (!bricks_) {
         if (done_) return false;
         segment = once_;
@@ -222,9 +295,29 @@ bool SegmentWalk::next(MediumSegment& segment) {
     segment.mean = scale * run.bounds.mean;
     segment.max = scale * run.bounds.max;
     segment.brick = run.brick;
-    segment.coord = run.coord;
     segment.entry = run.entry;
     segment.step = bricks_->step();
+    if (medium_->is_emissive()) {
+        segment.glow_brick = medium_->glow_.find(run.coord);
+        const int bound = run.block < 0 ? BrickVolume::brick_blocks : run.block;
+        segment.emission_max = medium_->emission_bounds_[static_cast<std::size_t>(
+            run.brick * Medium::bounds_per_brick + bound)];
+    }
+    return true;
+}
+
+bool SegmentWalk::next_of_layer(MediumSegment& segment) {
+    LayerRun run;
+    if (!layer_->next(run)) return false;
+    const double scale = static_cast<double>(medium_->strength_ * medium_->density_scale_);
+    segment = {};
+    segment.t0 = segment.anchor = run.t0;
+    segment.t1 = run.t1;
+    segment.min = static_cast<float>(scale * run.min);
+    segment.mean = static_cast<float>(scale * run.mean);
+    segment.max = static_cast<float>(scale * run.max);
+    segment.entry = run.entry;
+    segment.step = run.step;
     return true;
 }
 

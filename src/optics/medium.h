@@ -4,11 +4,12 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <variant>
+#include <vector>
 
 #include "grid/brick_volume.h"
 #include "grid/brick_walk.h"
 #include "optics/blackbody.h"
+#include "optics/layer.h"
 #include "optics/medium_params.h"
 #include "optics/phase.h"
 
@@ -27,21 +28,24 @@ struct MediumPoint {
     Vec3f extinction() const { return absorption + scattering; }
 };
 
-// A run of a ray inside a medium with bounds of the extinction of the strongest channel, 1/m. The
-// rest is for the medium's look-ups; a segment may be clipped by moving t0 and t1.
+// A run of a ray inside a medium with bounds of the extinction of the strongest channel, 1/m, and
+// its mean over the run or a block around it. In media without end t1 may be infinite. The rest is
+// for the medium's look-ups; a segment may be clipped by moving t0 and t1.
 struct MediumSegment {
     double t0 = 0, t1 = 0;
     float min = 0, mean = 0, max = 0;
+    // Bound of the emission a L_e of the strongest channel, W/(m^3 sr). It is positive also where
+    // something glows without density (max = 0), which trackers must not skip.
+    float emission_max = 0;
 
-    double anchor = 0;  // the t from which look-ups count
-    int brick = -1;
-    Vec3i coord;
+    double anchor = 0;                // the t from which look-ups count
+    int brick = -1, glow_brick = -1;  // of the density and of what glows; -1: no brick
     Vec3f entry, step;
 };
 
-// A box or an ellipsoid in space, filled evenly.
+// A box or an ellipsoid in space, filled evenly, or all of space.
 struct Region {
-    enum class Kind { Box, Ellipsoid };
+    enum class Kind { Box, Ellipsoid, Everywhere };
     Kind kind = Kind::Box;
     Vec3d center, size{1, 1, 1};  // metres: edges or diameters, before the rotation
     Transform rotation{};         // around the centre, no translation, no scale
@@ -50,11 +54,15 @@ struct Region {
     static Region sphere(const Vec3d& center, double radius) {
         return {Kind::Ellipsoid, center, Vec3d(2 * radius), {}};
     }
+    static Region everywhere() { return {Kind::Everywhere, {}, {1, 1, 1}, {}}; }
     // From [-1,1]^3, or the unit ball, to metres.
     Transform to_world() const;
 };
 
 class SegmentWalk;
+
+// Of a segment: a brick's diagonal crosses 21 planes.
+inline constexpr std::size_t most_cell_crossings = 32;
 
 // A participating medium at one moment: extinction, scattering, emission and a phase function as
 // functions of the place. The coefficients are a scalar density(x) >= 0 times constant cross
@@ -66,8 +74,10 @@ class Medium {
     // Error{Input} when a field is missing, naming those there are.
     Medium(const Frame& frame, const MediumParams& params, double time, Job& job);
     // Density 1 inside a region, nothing outside. Emission by blackbody takes `temperature` in K.
-    // Throws Error{Usage} when the region has no volume.
+    // Throws Error{Usage} when the region has no volume, or no end but a glow.
     Medium(const Region& region, const MediumParams& params, double time, double temperature = 0);
+    // A layer, its density being the layer's. Throws Error{Usage} when it is to glow.
+    Medium(const Layer& layer, const MediumParams& params, double time);
 
     const CrossSections& cross_sections() const { return cross_sections_; }
     const PhaseFunction& phase() const { return phase_; }
@@ -77,18 +87,25 @@ class Medium {
     float strength() const { return strength_; }
     // Largest extinction of the strongest channel anywhere, 1/m.
     float majorant() const { return majorant_; }
-    // Box around all that absorbs, scatters or glows, metres; empty where nothing does.
+    // Largest emission of the strongest channel anywhere, W/(m^3 sr).
+    float emission_majorant() const { return emission_majorant_; }
+    // Box around all that absorbs, scatters or glows, metres; empty where nothing does, infinite
+    // where the medium has no end.
     Box3d bounds() const;
-    // Edge of the smallest detail in metres (a voxel), 0 for homogeneous media.
+    bool is_bounded() const {
+        return shape_ != Shape::Everywhere && (!layer_ || layer_->is_round());
+    }
+    // Edge of the smallest detail in metres (a voxel), 0 for media without a grid.
     double cell_size() const { return cell_size_; }
     // Where look-up grids are best laid: a map to metres whose integer points are the samples of
     // the density, and the box in it that holds everything. For homogeneous media the longest edge
-    // of the box counts 64.
+    // of the box counts 64. Only where has_lattice(): not for layers and media without end.
     struct Lattice {
         Transform to_world;
         Box3d box;
     };
     Lattice lattice() const;
+    bool has_lattice() const { return shape_ != Shape::Everywhere && shape_ != Shape::Layered; }
 
     // At a point in metres, for probes; along rays use segments.
     float density(const Vec3d& point) const;
@@ -99,35 +116,64 @@ class Medium {
     SegmentWalk segments(const Ray& ray, BrickGrain grain = BrickGrain::Blocks) const;
     // Density at anchor + t[i], which must lie in the segment.
     void densities(const MediumSegment& segment, std::span<const float> t, float* out) const;
+    // The t in ]begin, end[ of a segment at which the density passes from one interpolation cell to
+    // the next; between them it is a cubic polynomial of t. `out` holds most_cell_crossings.
+    int cell_crossings_of(const MediumSegment& segment, float begin, float end,
+                          std::span<float> out) const;
     // Emission a L_e in W/(m^3 sr) at the same places, `density` being what densities() gave.
     void emissions(const MediumSegment& segment, std::span<const float> t, const float* density,
                    Vec3f* out) const;
+    // The same for one place, for trackers.
+    float density_at(const MediumSegment& segment, float t) const {
+        if (segment.brick >= 0) {
+            return density_scale_ *
+                   density_.at_local(segment.brick, segment.entry + t * segment.step);
+        }
+        if (!layer_) return density_scale_;
+        return density_scale_ * density_on_run(layer_->profile(), layer_->is_round(), segment.entry,
+                                               segment.step, t);
+    }
+    Vec3f emission_at(const MediumSegment& segment, float t, float density) const {
+        return is_emissive() ? glow(density, glow_at(segment, t)) : Vec3f{};
+    }
+    // Optical depth of the strongest channel, in which segments count, along a ray for t in
+    // [t0, t1]; the others are in the ratio of their extinction to strength(). Only for media
+    // without a grid: exact, over a sphere within 1e-7. May be infinite.
+    std::optional<float> optical_depth(const Ray& ray, double t0, double t1) const;
 
   private:
     friend class SegmentWalk;
 
-    struct Bricks {
-        BrickVolume density;
-        std::optional<BrickVolume> glow;  // temperature or flame, on the lattice of density
-    };
-    struct Homogeneous {
-        Region::Kind shape;
-        Transform to_world, to_unit;  // to_unit: metres to [-1,1]^3
-        float temperature = 0;
-    };
+    enum class Shape { Bricks, Box, Ellipsoid, Everywhere, Layered };
 
+    Interval inside(const Ray& ray) const;
     void take(const MediumParams& params, double time);
     BrickVolume pack(const Frame& frame, const std::string& name, const BrickOptions& options,
                      const Transform* lattice, Job& job) const;
+    void bound_emission();
+    float emission_bound(float density, float least, float most) const;
     Vec3f glow(float density, float value) const;
+    float glow_at(const MediumSegment& s, float t) const {
+        return s.glow_brick < 0 ? glow_elsewhere_
+                                : glow_.at_local(s.glow_brick, s.entry + t * s.step);
+    }
 
-    std::variant<Bricks, Homogeneous> kind_;
+    Shape shape_ = Shape::Bricks;
+    BrickVolume density_;
+    BrickVolume glow_;  // temperature or flame, on the lattice of density
+    // Bounds of the emission by brick: eight of its blocks and one of the whole.
+    static constexpr int bounds_per_brick = BrickVolume::brick_blocks + 1;
+    std::vector<float> emission_bounds_;
+    std::optional<Layer> layer_;
+    Transform to_world_, to_unit_;  // of a region: from [-1,1]^3 to metres and back
+    float glow_elsewhere_ = 0;      // where glow_ has no brick: K of a region, a background
     CrossSections cross_sections_;
     PhaseFunction phase_;
     MultipleScattering multiple_scattering_;
     EmissionKind emission_ = EmissionKind::None;
     double cell_size_ = 0;
-    float density_scale_ = 1, strength_ = 0, majorant_ = 0, emission_scale_ = 1;
+    float density_scale_ = 1, strength_ = 0, majorant_ = 0;
+    float emission_scale_ = 1, emission_majorant_ = 0;
     Vec2f temperature_range_{0, 1};
     std::shared_ptr<const BlackbodyTable> blackbody_;
 };
@@ -139,8 +185,11 @@ class SegmentWalk {
     bool next(MediumSegment& segment);
 
   private:
+    bool next_of_layer(MediumSegment& segment);
+
     const Medium* medium_;
     std::optional<BrickWalk> bricks_;
+    std::optional<LayerWalk> layer_;
     MediumSegment once_;  // the single run of a homogeneous medium
     bool done_ = false;
 };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "math/quadrature.h"
@@ -185,6 +186,63 @@ TEST(Medium, ShowsFlamesWhereThereIsNoDensity) {
     EXPECT_GT(covered, 1.8);
     EXPECT_GT(medium.at({}).emission.x, 0);
     EXPECT_EQ(medium.at({0, 0, 1.15}).emission.x, 0);
+}
+
+// Trackers look up one place at a time, on bounds that must hold.
+TEST(Medium, LooksUpSinglePlacesLikeMany) {
+    Job job;
+    Frame frame = frame_of("density", field_of({48, 48, 48}, bump_lattice, [](const Vec3d& p) {
+                               return bump(p - Vec3d(0, 0, 0.5));
+                           }));
+    frame.fields.emplace("flame", field_of({48, 48, 48}, bump_lattice, bump));
+    frame.fields.emplace("temperature", field_of({48, 48, 48}, bump_lattice,
+                                                 [](const Vec3d& p) { return 1500 + 800 * p.y; }));
+    for (const EmissionKind kind : {EmissionKind::Flame, EmissionKind::Blackbody}) {
+        MediumParams params = grey(1, 1);
+        params.emission = kind;
+        const Medium medium(frame, params, 0, job);
+        for (const BrickGrain grain : {BrickGrain::Blocks, BrickGrain::Bricks}) {
+            const Ray ray{{-2, 0.11, -0.9}, normalize(Vec3d(1, 0.05, 0.4))};
+            SegmentWalk walk = medium.segments(ray, grain);
+            bool glows_without_density = false;
+            for (MediumSegment s; walk.next(s);) {
+                std::array<float, 7> t, density;
+                std::array<Vec3f, 7> emission;
+                for (std::size_t i = 0; i < 7; ++i) {
+                    t[i] = static_cast<float>((s.t1 - s.t0) * double(i) / 6);
+                }
+                medium.densities(s, t, density.data());
+                medium.emissions(s, t, density.data(), emission.data());
+                for (std::size_t i = 0; i < 7; ++i) {
+                    EXPECT_NEAR(medium.density_at(s, t[i]), density[i], 1e-6);
+                    const Vec3f one = medium.emission_at(s, t[i], density[i]);
+                    EXPECT_EQ(one, emission[i]);
+                    EXPECT_LE(max_component(one), s.emission_max);
+                }
+                EXPECT_LE(s.emission_max, medium.emission_majorant());
+                glows_without_density |= s.max == 0 && s.emission_max > 0;
+            }
+            EXPECT_EQ(glows_without_density, kind == EmissionKind::Flame);
+        }
+    }
+}
+
+TEST(Medium, FillsAllOfSpace) {
+    const Medium fog(Region::everywhere(), grey(0.5, 1.5), 0);
+    EXPECT_FALSE(fog.is_bounded());
+    const Ray ray{{1e4, 0, 0}, {0, 2, 0}, 3};
+    SegmentWalk walk = fog.segments(ray);
+    MediumSegment s;
+    ASSERT_TRUE(walk.next(s));
+    EXPECT_EQ(s.t0, 3);
+    EXPECT_TRUE(std::isinf(s.t1));
+    EXPECT_EQ(s.max, 2);
+    EXPECT_EQ(fog.density_at(s, 1e9f), 1);
+    EXPECT_FALSE(walk.next(s));
+    EXPECT_FLOAT_EQ(*fog.optical_depth(ray, 4, 7), 12);
+    MediumParams glowing = grey(1, 0);
+    glowing.emission = EmissionKind::Blackbody;
+    EXPECT_THROW(Medium(Region::everywhere(), glowing, 0, 2000), Error);
 }
 
 TEST(Medium, SaysWhatIsWrongWithAFrame) {

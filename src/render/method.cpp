@@ -8,15 +8,18 @@
 #include "render/field/field.h"
 #include "render/march/march.h"
 #include "render/params.h"
+#include "render/path/path.h"
 
 namespace gischt {
 namespace {
 
-constexpr std::array<MethodInfo, 2> methods{{
+constexpr std::array<MethodInfo, 3> methods{{
     {"field", field_simulates, field_leaves_out, field_cost,
      [](const RenderParams& p) { return make_field_method(p.field); }},
     {"march", march_simulates, march_leaves_out, march_cost,
      [](const RenderParams& p) { return make_march_method(p.march); }},
+    {"path", path_simulates, path_leaves_out, path_cost,
+     [](const RenderParams& p) { return make_path_method(p.path); }},
 }};
 
 }  // namespace
@@ -26,7 +29,8 @@ const Table<RenderParams>& render_params_table() {
         Table<RenderParams>("render", "The parameters of the render methods")
             .sub("march", &RenderParams::march, march_table(), {.help = "Of the method 'march'"})
             .sub("field", &RenderParams::field, field_params_table(),
-                 {.help = "Of the method 'field'"});
+                 {.help = "Of the method 'field'"})
+            .sub("path", &RenderParams::path, path_table(), {.help = "Of the method 'path'"});
     return table;
 }
 

@@ -3,6 +3,7 @@
 
 #include "render/field/field_params.h"
 #include "render/march/march_params.h"
+#include "render/path/path_params.h"
 #include "schema/table.h"
 
 namespace gischt {
@@ -11,6 +12,7 @@ namespace gischt {
 struct RenderParams {
     MarchParams march;
     FieldParams field;
+    PathParams path;
 };
 
 const Table<RenderParams>& render_params_table();

@@ -143,6 +143,8 @@ const Table<Scene>& scene_table() {
             .add("gravity", &P::gravity,
                  {.unit = "m/s^2", .help = "Acceleration of gravity; by default 9.80665 downwards"})
             .list("fluid", &P::fluids, fluid_variants(), {.help = "The fluids"})
+            .list("medium", &P::media, placed_media_variants(),
+                  {.help = "Media that stand still: fog, air, a box of smoke"})
             .list("solid", &P::solids, surface_variants(),
                   {.help = "Solids: seen by the camera, casting shadows, and in the way of "
                            "simulated fluids"})

@@ -14,6 +14,7 @@
 #include "optics/camera.h"
 #include "optics/light_params.h"
 #include "optics/medium_params.h"
+#include "optics/placed_media.h"
 #include "optics/surface.h"
 #include "render/method.h"
 #include "render/params.h"
@@ -72,6 +73,7 @@ struct Scene {
     std::int64_t seed = 0;
     std::optional<Vec3d> gravity;  // m/s^2; unset: 9.80665 downwards
     std::vector<FluidSection> fluids;
+    std::vector<PlacedMediumParams> media;  // that do not come from a fluid: fog, air
     std::vector<SurfaceParams>
         solids;  // seen by the camera, and in the way of every simulated fluid
     std::vector<AnyLightParams> lights;

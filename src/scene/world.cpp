@@ -152,6 +152,7 @@ static void close_in(CameraParams& params, const View& view, const Framing& fram
             const Ray ray = camera.ray(x + 0.5, y + 0.5);
             double depth = 0;
             for (const auto& m : view.media) {
+                if (!m->has_lattice()) continue;
                 SegmentWalk walk = m->segments(ray);
                 for (MediumSegment s; walk.next(s);) depth += s.mean * (s.t1 - s.t0);
             }
@@ -176,7 +177,7 @@ CameraParams World::camera(const View& view) const {
     if (scene_.camera) return *scene_.camera;
     Box3d box = Box3d::empty();
     for (const auto& m : view.media) {
-        if (!m->bounds().is_empty()) box.extend(m->bounds());
+        if (m->has_lattice() && !m->bounds().is_empty()) box.extend(m->bounds());
     }
     if (box.is_empty()) return {};
     Framing framing;
@@ -208,6 +209,12 @@ View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int fr
         if (scene_.render.method == "field") continue;
         view.media.push_back(
             std::make_shared<Medium>(*view.frames[i], common.medium, view.time, job));
+    }
+    for (const PlacedMediumParams& m : scene_.media) {
+        if (scene_.render.method == "field") break;
+        for (auto& medium : place_media(m, view.time, scene_.up_vector())) {
+            view.media.push_back(std::move(medium));
+        }
     }
     view.lights = lights_.at(view.time);
     view.surfaces = SurfaceSet(scene_.solids, view.time, scene_.up_vector());

@@ -50,6 +50,11 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
     }
     is_grey = true;
     for (const auto& medium : view.media) {
+        if (!medium->has_lattice()) {
+            throw Error(ErrorKind::Usage, "march",
+                        "a medium has no end, or is as large as a planet",
+                        "give the fog a box, or take method 'path'");
+        }
         MarchMedium m;
         m.medium = medium.get();
         m.extinction = medium->cross_sections().extinction();

@@ -8,12 +8,12 @@
 
 #include "base/job.h"
 #include "optics/medium_depth.h"
+#include "optics/sun_depth.h"
 #include "optics/view.h"
 #include "render/march/march_params.h"
 #include "render/march/octave.h"
 #include "render/march/point_depth.h"
 #include "render/march/sky_grid.h"
-#include "render/march/sun_depth.h"
 
 namespace gischt {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "image/color.h"
+#include "math/fast_math.h"
 #include "optics/environment.h"
-#include "render/march/fast_math.h"
 #include "render/progressive.h"
 
 namespace gischt {

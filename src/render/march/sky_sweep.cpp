@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "render/march/fast_math.h"
+#include "math/fast_math.h"
 
 namespace gischt {
 

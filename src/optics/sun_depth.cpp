@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/march/sun_depth.h"
+#include "optics/sun_depth.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "schema/table.h"
+
+namespace gischt {
+
+// How the transmittance towards a light is estimated; all are unbiased.
+enum class TransmittanceEstimator {
+    Ratio,          // ratio tracking against the majorants of 4^3 blocks (Novak et al. 2014)
+    ResidualRatio,  // the blocks' means as control, the residual tracked
+    Exact,          // no noise: the optical depth integrated cell by cell
+    Cached,         // from a grid towards suns, made exact at random (a debiased control variate)
+};
+
+// How the first scattering of a camera ray is found.
+enum class CameraSegment {
+    Tracking,  // like every other: one distance by null collisions
+    Profile,   // the optical depth along the ray is computed exactly, distances are stratified
+};
+
+// The parameters of path tracing.
+struct PathParams {
+    TransmittanceEstimator shadow = TransmittanceEstimator::Cached;
+    CameraSegment camera = CameraSegment::Profile;
+    int points = 4;    // of a camera ray with a profile, at which direct light is taken
+    int splits = 1;    // of them from which paths go on
+    bool halo = true;  // suns are also reached through one scattering around their direction
+    double correction = 0.15;  // chance that a cached transmittance is made exact
+    double roulette = 0.1;     // paths weaker than this share of their start may end at random
+    std::int64_t cache_nodes = 40'000'000;  // of one grid towards a sun
+};
+
+const Table<PathParams>& path_table();
+
+}  // namespace gischt

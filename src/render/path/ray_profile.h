@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/path/media_walk.h"
+
+namespace gischt {
+
+// A point of a ray at which light may be scattered towards its origin.
+struct ProfilePoint {
+    double t = 0;
+    std::size_t medium = 0;  // the one that scatters
+    Vec3f weight;            // transmittance * scattering / density of the point
+};
+
+// The optical depth along a ray through media, without error but rounding: pieces in which every
+// density is a cubic polynomial of t, integrated by two Gauss points each. Gives transmittances,
+// and points in proportion to the extinction that is seen. Keeps its memory from ray to ray; one
+// per thread.
+class RayProfile {
+  public:
+    // The ray has unit direction. Stops at an optical depth of 24 in the clearest channel.
+    void trace(std::span<const Medium* const> media, const Ray& ray, bool is_grey,
+               std::int64_t& lookups);
+
+    bool is_empty() const { return pieces_.empty(); }
+    // Optical depth per channel of all of it.
+    const Vec3f& depth() const { return depth_; }
+
+    // Appends n points with a density in proportion to the mean over the channels of transmittance
+    // times extinction (constant extinction taken in each piece), at the stratified places
+    // (i + u) / n. The sum over the points of weight * f estimates the integral of transmittance
+    // * scattering * f. `choose` in [0, 1) picks among overlapping media.
+    void points(int n, float u, float choose, std::vector<ProfilePoint>& out,
+                std::int64_t& lookups) const;
+    // Density of these points at t, 1/m.
+    float density(double t) const;
+    // The point at t with weight transmittance * scattering / pdf.
+    ProfilePoint at(double t, float pdf, float choose, std::int64_t& lookups) const;
+
+    // Integral of transmittance times emission, one random place per piece: W/(m^2 sr).
+    Vec3f emission(float u, std::int64_t& lookups) const;
+
+  private:
+    struct Run {
+        double t0 = 0, t1 = 0;
+        std::size_t first = 0, count = 0;  // of active_
+    };
+    struct Piece {
+        double t0 = 0;
+        float length = 0;
+        std::uint32_t run = 0;
+        Vec3f depth;       // before it
+        Vec3f extinction;  // mean, 1/m
+    };
+    std::span<const ActiveMedium> active(const Piece& piece) const {
+        const Run& run = runs_[piece.run];
+        return {active_.data() + run.first, run.count};
+    }
+    void add_run(const MediaRun& run, std::int64_t& lookups);
+    const Piece* find(double t) const;
+    ProfilePoint make_point(const Piece& piece, double t, float pdf, float choose,
+                            std::int64_t& lookups) const;
+    float density_in(const Piece& piece, float s) const;
+
+    bool is_grey_ = true;
+    Vec3f depth_;
+    std::vector<Run> runs_;
+    std::vector<ActiveMedium> active_;
+    std::vector<Piece> pieces_;
+    std::vector<float> edges_, t_, densities_;
+};
+
+}  // namespace gischt

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/path/tracking.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/fast_math.h"
+#include "render/path/media_walk.h"
+
+namespace gischt {
+namespace {
+
+// -log(1 - u), finite for u in [0, 1).
+float exponential(float u) {
+    return -fast_log(1 - u);
+}
+
+// A stretch that glows with next to no density still needs tentative collisions to see it.
+float with_floor(const MediaRun& run, bool is_emissive) {
+    if (!is_emissive || run.emission_max == 0) return run.max;
+    return std::max(run.max, 1 / static_cast<float>(run.t1 - run.t0));
+}
+
+Vec3f emission_of(const MediaRun& run, double t) {
+    Vec3f sum;
+    for (const ActiveMedium& a : run.active) {
+        if (a.segment.emission_max == 0) continue;
+        const auto at = static_cast<float>(t - a.segment.anchor);
+        sum += a.medium->emission_at(a.segment, at, a.medium->density_at(a.segment, at));
+    }
+    return sum;
+}
+
+}  // namespace
+
+Vec3f extinction_at(const MediaRun& run, double t) {
+    Vec3f sum;
+    for (const ActiveMedium& a : run.active) {
+        sum += a.density(t) * a.medium->cross_sections().extinction();
+    }
+    return sum;
+}
+
+// Whether a tentative collision is a real one, and with which medium: `u` is uniform in [0, 1). The
+// hero's extinctions share [0, 1) with the null collision at its end.
+bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float majorant, float u,
+                            PathWeight& weight, Collision& end) {
+    const float at = u * majorant;
+    if (is_grey && run.active.size() == 1) {
+        const ActiveMedium& a = run.active[0];
+        if (at >= run.min) {
+            ++lookups;
+            if (at >= a.density(t) * a.medium->strength()) return false;
+        }
+        end.t = t;
+        end.medium = a.index;
+        return true;
+    }
+    Vec3f total;
+    float below = 0;
+    bool is_real = false;
+    for (const ActiveMedium& a : run.active) {
+        ++lookups;
+        const float density = a.density(t);
+        const Vec3f extinction = density * a.medium->cross_sections().extinction();
+        total += extinction;
+        below += extinction[hero];
+        if (!is_real && at < below) {
+            is_real = true;
+            end = {t, a.index};
+            const Vec3f ratio = extinction / Vec3f(extinction[hero]);
+            weight.weight = weight.weight * ratio;
+            weight.rate = weight.rate * ratio;
+        }
+    }
+    if (is_real) return true;
+    const Vec3f null = Vec3f(1) - total / Vec3f(majorant);
+    const Vec3f ratio = max(null, Vec3f(0)) / Vec3f(null[hero]);
+    weight.weight = weight.weight * ratio;
+    weight.rate = weight.rate * ratio;
+    return false;
+}
+
+bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& random,
+                  Collision& end, Vec3f* emission) {
+    MediaWalk walk(media, ray, BrickGrain::Bricks);
+    MediaRun run;
+    float depth_to_go = exponential(random.leading());
+    while (walk.next(run)) {
+        const float majorant = with_floor(run, is_emissive);
+        if (majorant == 0) continue;
+        double t = run.t0;
+        for (;;) {
+            const double left = static_cast<double>(majorant) * (run.t1 - t);
+            if (static_cast<double>(depth_to_go) >= left) {
+                depth_to_go -= static_cast<float>(left);
+                break;
+            }
+            t += static_cast<double>(depth_to_go / majorant);
+            depth_to_go = exponential(random.next());
+            if (emission && is_emissive) {
+                *emission += weight.value() * emission_of(run, t) * (1 / majorant);
+            }
+            if (choose_medium(run, t, hero, majorant, random.next(), weight, end)) return true;
+        }
+    }
+    return false;
+}
+
+Vec3f Tracker::transmittance(const Ray& ray, TransmittanceEstimator estimator,
+                             RandomStream& random) {
+    if (media.empty()) return Vec3f(1);
+    if (estimator == TransmittanceEstimator::Exact) {
+        const Vec3f depth = exact_depth(ray);
+        if (is_grey) return Vec3f(fast_exp(-depth.x));
+        return {fast_exp(-depth.x), fast_exp(-depth.y), fast_exp(-depth.z)};
+    }
+    return ratio_tracking(ray, estimator == TransmittanceEstimator::ResidualRatio, random);
+}
+
+// Ratio tracking (Novak, Selle, Jarosz 2014): the product of the chances of a null collision. With
+// the mean of each block as control, what remains is the residual around it.
+Vec3f Tracker::ratio_tracking(const Ray& ray, bool with_control, RandomStream& random) {
+    constexpr float faint = 0.05f, survival = 0.25f;
+    constexpr float longest = 1e30f;  // in place of infinity, which must not meet a 0
+    MediaWalk walk(media, ray);
+    MediaRun run;
+    Vec3f product(1), control_depth;
+    float depth_to_go = exponential(random.next());
+    while (walk.next(run)) {
+        const bool is_flat = run.min == run.max;
+        float majorant = run.max;
+        Vec3f control;
+        if (with_control) {
+            for (const ActiveMedium& a : run.active) {
+                const float mean = a.segment.mean / a.medium->strength();
+                if (a.segment.mean > 0) control += mean * a.medium->cross_sections().extinction();
+            }
+            control_depth += std::min(static_cast<float>(run.t1 - run.t0), longest) * control;
+            majorant = is_flat ? 0 : std::max(run.max - run.mean, run.mean - run.min);
+        }
+        if (majorant == 0) continue;
+        for (double t = run.t0;;) {
+            const double left = static_cast<double>(majorant) * (run.t1 - t);
+            if (static_cast<double>(depth_to_go) >= left) {
+                depth_to_go -= static_cast<float>(left);
+                break;
+            }
+            t += static_cast<double>(depth_to_go / majorant);
+            depth_to_go = exponential(random.next());
+            lookups += static_cast<std::int64_t>(run.active.size());
+            product = product * (Vec3f(1) - (extinction_at(run, t) - control) / Vec3f(majorant));
+        }
+        // Russian roulette of what is nearly dark.
+        const float left = max_component(abs(product)) * fast_exp(-min_component(control_depth));
+        if (left < faint) {
+            if (left == 0 || random.next() >= survival) return {};
+            product *= 1 / survival;
+        }
+    }
+    return product * Vec3f(fast_exp(-control_depth.x), fast_exp(-control_depth.y),
+                           fast_exp(-control_depth.z));
+}
+
+// Integral of the density over [t0, t1] of a segment, in t.
+static double exact_integral(const Medium& medium, const MediumSegment& segment,
+                             std::int64_t& lookups) {
+    constexpr float gauss = 0.211324865f;  // (1 - 1/sqrt(3)) / 2
+    std::array<float, most_cell_crossings> edge;
+    std::array<float, 2 * most_cell_crossings + 2> t, density;
+    const auto last = static_cast<float>(segment.t1 - segment.anchor);
+    float begin = static_cast<float>(segment.t0 - segment.anchor);
+    const int n = medium.cell_crossings_of(segment, begin, last, edge);
+    std::size_t count = 0;
+    const auto end_of = [&](int i) { return i < n ? edge[static_cast<std::size_t>(i)] : last; };
+    for (int i = 0; i <= n; ++i) {
+        const float reach = end_of(i) - begin;
+        t[count++] = begin + gauss * reach;
+        t[count++] = begin + (1 - gauss) * reach;
+        begin += reach;
+    }
+    medium.densities(segment, {t.data(), count}, density.data());
+    lookups += static_cast<std::int64_t>(count);
+    begin = static_cast<float>(segment.t0 - segment.anchor);
+    float sum = 0;
+    for (int i = 0; i <= n; ++i) {
+        const auto k = static_cast<std::size_t>(2 * i);
+        sum += 0.5f * (end_of(i) - begin) * (density[k] + density[k + 1]);
+        begin = end_of(i);
+    }
+    return static_cast<double>(sum);
+}
+
+double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t& lookups) {
+    if (medium.strength() == 0) return 0;
+    const double enough = 24.0 / static_cast<double>(medium.strength());
+    double sum = 0;
+    SegmentWalk walk = medium.segments(ray, BrickGrain::Bricks);
+    MediumSegment s;
+    while (walk.next(s)) {
+        if (s.max == 0) continue;
+        sum += s.min == s.max ? static_cast<double>(s.mean / medium.strength()) * (s.t1 - s.t0)
+                              : exact_integral(medium, s, lookups);
+        if (sum > enough) return std::min(sum, 1e30);
+    }
+    return sum;
+}
+
+Vec3f Tracker::exact_depth(const Ray& ray) {
+    Vec3f sum;
+    for (const Medium* medium : media) {
+        sum += static_cast<float>(exact_density_integral(*medium, ray, lookups)) *
+               medium->cross_sections().extinction();
+    }
+    return sum;
+}
+
+}  // namespace gischt
