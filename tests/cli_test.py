@@ -225,7 +225,7 @@ class Films(CliCase):
         self.assertFalse((self.dir / "x.exr").exists())
 
     def test_interrupted_renders_go_on_to_the_same_bits(self):
-        for flags in (["--spp", 3000], ["--noise", "0.004"]):
+        for flags in (["--spp", 1500], ["--noise", "0.006"]):
             self.render(*flags, "-o", "whole.exr", "--restart")
             stops = 0
             for attempt in range(4):
