@@ -110,8 +110,9 @@ class Progression {
             (state_.ranges.size() == 1 && state_.ranges[0].begin == settings_.first_sample);
         const std::string holds = fmt::format("it holds the samples {}", to_text(state_.ranges));
         if (!fits) fail("its size, filter or channels are others");
+        if (goals().empty() && state_.is_complete()) goals().assign(tiles_.count(), most_samples());
         if (!is_one_run || goals().size() != tiles_.count())
-            fail(holds + " of a merge or of a part");
+            fail(holds + ", with gaps or not from the first one on");
         if (most_samples() > settings_.samples_per_pixel) fail(holds + ", more than asked for");
         for (auto& goal : goals()) goal = std::clamp(goal, 1, settings_.samples_per_pixel);
     }

@@ -41,6 +41,7 @@ class PathMethod : public RenderMethod {
         const PathScene scene(view, params_, job);
         ProgressiveTask task;
         task.method = "path";
+        task.layout = aov_layout(view, settings, {.method = "path"});
         task.make_worker = [&] {
             return std::make_unique<PathWorker>(view, scene, settings.depth);
         };
