@@ -9,6 +9,7 @@
 #include "optics/environment.h"
 #include "render/march/aimed_sky.h"
 #include "render/march/irradiance_map.h"
+#include "render/march/march.h"
 #include "render/march/ray_march.h"
 
 namespace gischt {
@@ -102,6 +103,34 @@ TEST(SurfaceSky, IsFreeOfNoiseUnderAnOpenSky) {
     const double expected = 0.5 / pi * (2 * pi + 2 * pi / 3 + 100 * 2 * pi / 400 / std::sqrt(6.0));
     EXPECT_NEAR(s.mean / expected, 1, 3e-3);
     EXPECT_LT(s.deviation, 1e-5 * s.mean);
+}
+
+// The edges of still surfaces and their light are the same in every frame: nothing flickers.
+TEST(SurfaceSky, StaysStillFromFrameToFrame) {
+    SphereSurface ball;
+    ball.center = Keyed<Vec3d>(Vec3d(0, 0, 9));
+    View view =
+        floor_under(std::make_shared<EnvironmentLight>(gradient(0), Transform{}, Vec3f(1)), {ball});
+    CameraParams camera;
+    camera.position = Keyed<Vec3d>(Vec3d(0, -30, 5));
+    camera.target = Keyed<Vec3d>(Vec3d(0, 0, 5));
+    view.camera = Camera(camera, 0, 32, 32);
+    RenderSettings settings;
+    settings.samples_per_pixel = 2;
+    Job job;
+    view.frame = 1;
+    const Image one = make_march_method({})->render(view, settings, job).image;
+    view.frame = 2;
+    const Image two = make_march_method({})->render(view, settings, job).image;
+    const auto a = one.channel("G"), b = two.channel("G");
+    for (int x = 0; x < 32; ++x) {
+        // The horizon is in the middle, the ball's top above it; its foot's shadow is not looked
+        // at.
+        for (const int y : {2, 8, 12, 15, 16}) {
+            const std::size_t i = one.index(x, y);
+            EXPECT_NEAR(a[i], b[i], 0.02f * a[i]) << x << " " << y;
+        }
+    }
 }
 
 // At the foot of an endless wall whose top stands at an elevation a, (1 + cos a) / 2 of the
