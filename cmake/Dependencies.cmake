@@ -9,6 +9,8 @@ find_package(CLI11 REQUIRED)
 find_package(OpenEXR REQUIRED QUIET)
 find_package(PNG REQUIRED)
 find_package(hwy REQUIRED)
+find_package(embree 3.13 REQUIRED)
+find_package(assimp REQUIRED)
 # Three paths: the baseline of x86-64, AVX2, AVX-512. Those between them cost build time and gain nothing today.
 target_compile_definitions(hwy::hwy INTERFACE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL)")
 if(GISCHT_TESTS)

@@ -38,6 +38,7 @@ void add_sim(CLI::App& app, CommandContext& context);
 void add_render(CLI::App& app, CommandContext& context);
 void add_check(CLI::App& app, CommandContext& context);
 void add_info(CLI::App& app, CommandContext& context);
+void add_merge(CLI::App& app, CommandContext& context);
 void add_compare(CLI::App& app, CommandContext& context);
 void add_scenes(CLI::App& app, CommandContext& context);
 void add_doc(CLI::App& app, CommandContext& context);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "command.h"
+#include "io/film_file.h"
 #include "io/image_file.h"
 #include "io/vdb.h"
 #include "scene/load.h"
@@ -37,6 +38,17 @@ void print_image(const std::string& path) {
     for (const Channel& p : image.planes) fmt::print(" {}", p.name);
     fmt::print("\n");
     for (const auto& [key, value] : image.metadata.entries) fmt::print("  {} = {}\n", key, value);
+}
+
+void print_film(const std::string& path) {
+    const FilmFile file = read_film(path);
+    const Film& film = *file.state.film;
+    fmt::print("{}: film of {}x{} pixels, samples {}{}\n", path, film.width(), film.height(),
+               to_text(file.state.ranges), file.state.is_complete() ? "" : " (not all pixels)");
+    fmt::print("  channels R G B A Z");
+    for (const std::string& name : film.extra_names()) fmt::print(" {}", name);
+    fmt::print("\n  noise {:.4g}, {} samples rejected\n", film.noise(), film.rejected());
+    for (const auto& [key, value] : file.metadata.entries) fmt::print("  {} = {}\n", key, value);
 }
 
 void print_scene(const std::string& target) {
@@ -74,6 +86,8 @@ int print_info(const std::string& target, Job& job) {
         print_volume(target, job);
     else if (is_image_file(target))
         print_image(target);
+    else if (is_film_file(target))
+        print_film(target);
     else if (is_cache(target))
         print_cache(target);
     else
@@ -86,8 +100,10 @@ int print_info(const std::string& target, Job& job) {
 // gischt info FILE
 void add_info(CLI::App& app, CommandContext& context) {
     auto target = std::make_shared<std::string>();
-    CLI::App* sub = app.add_subcommand("info", "What is in a .vdb, an image, a cache or a scene");
-    sub->add_option("FILE", *target, "A .vdb, .exr, .png or .hdr file, a cache folder, or a scene")
+    CLI::App* sub =
+        app.add_subcommand("info", "What is in a .vdb, an image, a film, a cache or a scene");
+    sub->add_option("FILE", *target,
+                    "A .vdb, .exr, .png, .hdr or .film file, a cache folder, or a scene")
         ->required();
     sub->callback([target, &context] {
         context.action = [target, &context] { return print_info(*target, context.job); };

@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
     add_render(app, context);
     add_check(app, context);
     add_info(app, context);
+    add_merge(app, context);
     add_compare(app, context);
     add_scenes(app, context);
     add_doc(app, context);

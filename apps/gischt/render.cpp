@@ -44,8 +44,10 @@ void add_render(CLI::App& app, CommandContext& context) {
     sub->add_option("TARGET", options->target,
                     "A scene, a .vdb file (or pattern name_####.vdb), or a cache folder")
         ->required();
-    sub->add_option("-o,--output", options->outputs,
-                    "Picture (.png, .exr, .hdr), movie (.mp4) or folder; repeatable")
+    sub->add_option(
+           "-o,--output", options->outputs,
+           "Picture (.png, .exr, .hdr), state to go on with (.film), movie (.mp4) or folder; "
+           "repeatable")
         ->type_name("IMAGE")
         ->allow_extra_args(false);
     sub->add_option("--turntable", options->turntable, "This many views around the object")

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
@@ -43,11 +44,20 @@ double parse_time(const std::string& text) {
     return number * factor;
 }
 
+bool sets_samples(const CommandContext& context) {
+    return std::ranges::any_of(context.sets,
+                               [](const std::string& s) { return s.starts_with("render.spp="); });
+}
+
 std::vector<std::string> overrides_of(const SceneOptions& o, const CommandContext& context) {
     std::vector<std::string> sets;
     if (o.preview) sets = {"render.spp=1"};
     sets.insert(sets.end(), context.sets.begin(), context.sets.end());
     if (!o.method.empty()) sets.push_back("render.method=" + o.method);
+    // Who stops by noise or time has no number of samples in mind.
+    if (!o.spp && o.samples.empty() && (o.noise || !o.time.empty()) && !sets_samples(context)) {
+        sets.push_back(fmt::format("render.spp={}", 1 << 24));
+    }
     if (o.spp) sets.push_back(fmt::format("render.spp={}", *o.spp));
     if (o.seed) sets.push_back(fmt::format("seed={}", *o.seed));
     if (o.exposure) sets.push_back(fmt::format("film.exposure={}", *o.exposure));
@@ -76,6 +86,7 @@ Order order_of(const SceneOptions& o, const CommandContext& context) {
     order.noise = o.noise.value_or(0);
     if (!o.time.empty()) order.time_limit = parse_time(o.time);
     if (!o.samples.empty()) order.first_sample = parse_pair(o.samples, ':', "--samples").first;
+    order.adaptive = o.samples.empty();
     order.preview = o.preview;
     order.restart = o.restart;
     order.command = context.command_line;
@@ -132,8 +143,9 @@ void finish_statistics(const RunStatistics& run, const CommandContext& context, 
 void add_scene_flags(CLI::App& app, SceneOptions& o, bool pictures) {
     app.add_option("--frames", o.frames, "Which frames")->type_name("A-B[xSTEP]");
     app.add_option("--seed", o.seed, "Another seed gives other random numbers");
-    app.add_flag("--restart", o.restart, "Throw away cached frames and start anew");
-    app.add_flag("--resume", o.resume, "Use cached frames and go on where they stop (the default)");
+    app.add_flag("--restart", o.restart, "Throw away cached frames and films and start anew");
+    app.add_flag("--resume", o.resume,
+                 "Use cached frames and films and go on where they stop (the default)");
     app.add_flag("--preview", o.preview,
                  "The fastest method that shows the motion; coarser numbers, the same scene");
     if (!pictures) return;

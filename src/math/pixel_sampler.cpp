@@ -73,6 +73,13 @@ PixelSampler::PixelSampler(std::uint64_t seed, int frame, int x, int y, std::uin
     key_ = random_key(picture_, order_, index);
 }
 
+PixelSampler PixelSampler::part(std::uint32_t count, std::uint32_t i) const {
+    PixelSampler p = *this;
+    p.index_ = index_ * count + i;
+    p.key_ = random_key(picture_, order_, p.index_);
+    return p;
+}
+
 float PixelSampler::stratified_one(std::uint32_t dimension) const {
     const Ordered o = shuffle(seed_bits(picture_, 2 * dimension), index_, order_);
     const std::uint64_t scramble = seed_bits(picture_, 2 * dimension + 1);

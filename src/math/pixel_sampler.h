@@ -45,6 +45,9 @@ class PixelSampler {
     // 0 <= x, y < 65536.
     PixelSampler(std::uint64_t seed, int frame, int x, int y, std::uint32_t index);
 
+    // Sample i of `count` that a sample splits into: stratified together with all of theirs.
+    PixelSampler part(std::uint32_t count, std::uint32_t i) const;
+
     float one(std::uint32_t dimension) const {
         return dimension < stratified_dimensions ? stratified_one(dimension) : hashed(dimension).x;
     }

@@ -15,15 +15,11 @@ namespace gischt {
 namespace {
 
 constexpr double band_step = (visible_max - visible_min) / (Atmosphere::bands - 1);
-constexpr double air_scale_height = 8000, haze_scale_height = 1200;  // m
 constexpr double haze_single_albedo = 0.9;
-constexpr float haze_mean_cosine = 0.76f;
 
-// Ozone absorbs in a layer around 25 km that fades linearly over 15 km to both sides; 300 Dobson
-// units of 2.687e20 molecules per m^2 in all. Cross-sections in m^2 at 380, 420, ... 780 nm
-// (Chappuis band; Gorshelev et al. 2014, at 233 K).
-constexpr double ozone_center = 25e3, ozone_reach = 15e3;
-constexpr double ozone_molecules = 300 * 2.687e20 / ozone_reach;  // 1/m^3 in the middle
+// 300 Dobson units of 2.687e20 molecules per m^2 in all. Cross-sections in m^2 at 380, 420, ... 780
+// nm (Chappuis band; Gorshelev et al. 2014, at 233 K).
+constexpr double ozone_molecules = 300 * 2.687e20 / Atmosphere::ozone_reach;  // 1/m^3, middle
 constexpr Atmosphere::Spectrum ozone_cross_section{2.818e-28, 5.520e-27, 3.669e-26, 1.480e-25,
                                                    3.091e-25, 4.398e-25, 3.740e-25, 1.852e-25,
                                                    7.455e-26, 4.228e-26, 2.534e-26};
@@ -75,7 +71,13 @@ struct Atmosphere::Step {
     Spectrum through;  // transmittance of the piece
 };
 
-Atmosphere::Atmosphere(double turbidity, double ground_albedo) : ground_albedo_(ground_albedo) {
+Atmosphere::Atmosphere(double turbidity, double ground_albedo) : Atmosphere(turbidity) {
+    ground_albedo_ = ground_albedo;
+    build_columns();
+    build_multiple_scattering();
+}
+
+Atmosphere::Atmosphere(double turbidity) {
     // Optical depth of the haze: Angstrom's beta lambda^-1.3, lambda in micrometres.
     const double beta = std::max(0.0, 0.04608 * turbidity - 0.04586);
     // Solid angle of the sun's disc, weighted by the cosine.
@@ -95,8 +97,19 @@ Atmosphere::Atmosphere(double turbidity, double ground_albedo) : ground_albedo_(
     // White balance of a camera set to daylight.
     const Vec3d white = to_rgb(solar_);
     for (Vec3d& rgb : band_rgb_) rgb = rgb * (Vec3d(luminance(white)) / white);
-    build_columns();
-    build_multiple_scattering();
+}
+
+Atmosphere::Coefficients Atmosphere::coefficients(double turbidity) {
+    const Atmosphere air(turbidity);
+    const auto mean = [&](auto&& coefficient) {
+        Spectrum lost;
+        for (std::size_t b = 0; b < bands; ++b) lost[b] = air.solar_[b] * coefficient(b);
+        return air.to_rgb(lost) / air.to_rgb(air.solar_);
+    };
+    return {mean([&](std::size_t b) { return air.air_[b]; }),
+            mean([&](std::size_t b) { return air.haze_scatter_[b]; }),
+            mean([&](std::size_t b) { return air.haze_[b] - air.haze_scatter_[b]; }),
+            mean([&](std::size_t b) { return air.ozone_[b]; })};
 }
 
 Vec3d Atmosphere::to_rgb(const Spectrum& spectrum) const {
@@ -204,8 +217,9 @@ Atmosphere::Spectrum Atmosphere::radiance(double height, const Vec3d& direction,
                                           const Vec3d& sun) const {
     const double cosine = dot(direction, sun);
     const double phase_air = rayleigh_phase(cosine);
-    const auto phase_haze = static_cast<double>(
-        HenyeyGreensteinPhase{haze_mean_cosine}.value(static_cast<float>(cosine)));
+    const auto phase_haze =
+        static_cast<double>(HenyeyGreensteinPhase{static_cast<float>(haze_mean_cosine)}.value(
+            static_cast<float>(cosine)));
     Spectrum sum{};
     Spectrum arrives;
     Vec3d end;

@@ -19,8 +19,19 @@ class Atmosphere {
     static constexpr int bands = 11;
     using Spectrum = std::array<double, bands>;
 
-    static constexpr double ground_radius = 6.36e6, top_radius = 6.46e6;  // m
-    static constexpr double sun_angular_diameter = 0.00930;               // radians
+    static constexpr double ground_radius = 6.36e6, top_radius = 6.46e6;        // m
+    static constexpr double sun_angular_diameter = 0.00930;                     // radians
+    static constexpr double air_scale_height = 8000, haze_scale_height = 1200;  // m
+    static constexpr double haze_mean_cosine = 0.76;
+    // Ozone absorbs in a layer that fades linearly over `reach` to both sides.
+    static constexpr double ozone_center = 25e3, ozone_reach = 15e3;  // m
+
+    // Coefficients in 1/m, at sea level or in the middle of the ozone, as means over each Rec.709
+    // channel of sunlight: what thin air does to it. For methods that follow three channels.
+    struct Coefficients {
+        Vec3d air_scattering, haze_scattering, haze_absorption, ozone_absorption;
+    };
+    static Coefficients coefficients(double turbidity);
 
     // Turbidity: 1 for pure air, 2 clear, 3 a little haze, 6 hazy (Angstrom's formula, Preetham et
     // al. 1999, A.1). Albedo of the ground, in [0,1]. Takes about 0.1 s.
@@ -42,6 +53,8 @@ class Atmosphere {
     Vec3d to_rgb(const Spectrum& spectrum) const;
 
   private:
+    explicit Atmosphere(double turbidity);  // without the tables
+
     // Amounts of the three kinds of matter: their densities at a point relative to that at sea
     // level (ozone: to its maximum), or integrals of them over a path, in metres.
     struct Columns {
@@ -62,7 +75,7 @@ class Atmosphere {
     bool walk(double height, const Vec3d& direction, int steps, Spectrum& reaches, Vec3d& end,
               F&& f) const;
 
-    double ground_albedo_;
+    double ground_albedo_ = 0;
     Spectrum solar_{}, air_{}, haze_scatter_{}, haze_{}, ozone_{};  // 1/m at density 1
     std::array<Vec3d, bands> band_rgb_{};
     std::vector<Columns> columns_;

@@ -40,6 +40,8 @@ class Camera {
     // `lens` in [0,1)^2 chooses the point of the aperture, `time` in [0,1) the moment between the
     // opening and the closing of the shutter.
     Ray ray(double x, double y, Vec2f lens = {0.5f, 0.5f}, double time = 0.5) const;
+    // Whether `lens` makes a difference.
+    bool has_aperture() const { return false; }
     // Distance along the view axis (the Z of an image) of the point ray.at(t), metres.
     double depth(const Ray& ray, double t) const { return t * dot(ray.direction, forward_); }
     // Where a point appears, in pixels; nothing behind a perspective camera.

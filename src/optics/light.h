@@ -42,6 +42,7 @@ class Light {
     virtual Vec3f mean_radiance(const Vec3d& point) const = 0;
 
     std::string name;            // of the scene file; may be empty
+    std::string group;           // of lights with a layer of the picture of their own; may be empty
     bool camera_visible = true;  // lights at infinity only: whether the camera sees radiance()
 };
 

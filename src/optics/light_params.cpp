@@ -8,6 +8,9 @@ const Table<LightParams>& common_table() {
     static const Table<LightParams> table =
         Table<LightParams>("light", "What all lights have")
             .add("name", &LightParams::name, {.help = "For messages and --set"})
+            .add("group", &LightParams::group,
+                 {.help = "Lights of one group get the layer light_GROUP of an EXR, where the "
+                          "method can tell them apart"})
             .add("color", &LightParams::color,
                  {.help = "Factor per channel; (1, 1, 1) is a flat spectrum",
                   .min = 0,
@@ -151,6 +154,64 @@ const Table<SkyParams>& sky_table() {
     return table;
 }
 
+const Table<AreaLightParams>& area_table() {
+    static const Table<AreaLightParams> table = [] {
+        auto t = Table<AreaLightParams>("area", "What lights that have a size have");
+        t.add("position", &AreaLightParams::position, {.unit = "m", .help = "Its middle"})
+            .add("radiance", &AreaLightParams::radiance,
+                 {.unit = "W/(m^2 sr)", .help = "What it gives off", .min = 0})
+            .add("power", &AreaLightParams::power,
+                 {.unit = "W", .help = "What it gives off in all, in place of radiance", .min = 0});
+        add_visibility(t);
+        t.base(common_table());
+        return t;
+    }();
+    return table;
+}
+
+const Table<SheetLightParams>& sheet_light_table() {
+    static const Table<SheetLightParams> table =
+        Table<SheetLightParams>("sheet", "What flat lights have")
+            .add("target", &SheetLightParams::target,
+                 {.unit = "m", .help = "A point that it faces"})
+            .add("two_sided", &SheetLightParams::two_sided,
+                 {.help = "Whether it shines to its back too"})
+            .base(area_table());
+    return table;
+}
+
+const Table<RectLightParams>& rect_light_table() {
+    static const Table<RectLightParams> table =
+        Table<RectLightParams>("rect", "A rectangle that shines; for method 'path'")
+            .add("size", &RectLightParams::size,
+                 {.unit = "m",
+                  .help = "Lengths of its horizontal edge and of the other",
+                  .min = 0,
+                  .min_open = true})
+            .add("roll_degrees", &RectLightParams::roll_degrees,
+                 {.unit = "degrees", .help = "Turned around the way to the target"})
+            .base(sheet_light_table());
+    return table;
+}
+
+const Table<DiscLightParams>& disc_light_table() {
+    static const Table<DiscLightParams> table =
+        Table<DiscLightParams>("disc", "A disc that shines; for method 'path'")
+            .add("radius", &DiscLightParams::radius,
+                 {.unit = "m", .help = "Its radius", .min = 0, .min_open = true})
+            .base(sheet_light_table());
+    return table;
+}
+
+const Table<SphereLightParams>& sphere_light_table() {
+    static const Table<SphereLightParams> table =
+        Table<SphereLightParams>("sphere", "A ball that shines; for method 'path'")
+            .add("radius", &SphereLightParams::radius,
+                 {.unit = "m", .help = "Its radius", .min = 0, .min_open = true})
+            .base(area_table());
+    return table;
+}
+
 }  // namespace
 
 const Variants<AnyLightParams>& light_variants() {
@@ -161,7 +222,10 @@ const Variants<AnyLightParams>& light_variants() {
             .add("sun", sun_table())
             .add("constant", constant_table())
             .add("environment", environment_table())
-            .add("sky", sky_table());
+            .add("sky", sky_table())
+            .add("rect", rect_light_table())
+            .add("disc", disc_light_table())
+            .add("sphere", sphere_light_table());
     return variants;
 }
 

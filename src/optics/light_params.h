@@ -15,7 +15,7 @@ namespace gischt {
 
 // What all lights have: a strength in their own unit, times a colour, times that of a black body.
 struct LightParams {
-    std::string name;
+    std::string name, group;
     Keyed<Vec3d> color{Vec3d{1, 1, 1}};
     Keyed<double> temperature{0};  // K; its colour has luminance 1; 0: none
 };
@@ -63,8 +63,31 @@ struct SkyParams : LightParams {
     bool camera_visible = true;
 };
 
+// Lights that have a size. They are surfaces: seen, hit by light paths, and they cast shadows.
+struct AreaLightParams : LightParams {
+    Keyed<Vec3d> position{Vec3d{0, 0, 5}};  // m, of the middle
+    Keyed<double> radiance{10};             // W/(m^2 sr)
+    std::optional<Keyed<double>> power;     // W, in place of radiance
+    bool camera_visible = true;
+};
+struct SheetLightParams : AreaLightParams {
+    Keyed<Vec3d> target{Vec3d{0, 0, 0}};  // m, a point that the light faces
+    bool two_sided = false;
+};
+struct RectLightParams : SheetLightParams {
+    Vec2d size{1, 1};         // m, of the horizontal edge and the other
+    double roll_degrees = 0;  // around the way to the target
+};
+struct DiscLightParams : SheetLightParams {
+    double radius = 0.5;  // m
+};
+struct SphereLightParams : AreaLightParams {
+    double radius = 0.5;  // m
+};
+
 using AnyLightParams =
-    std::variant<PointParams, SpotParams, SunParams, ConstantParams, EnvironmentParams, SkyParams>;
+    std::variant<PointParams, SpotParams, SunParams, ConstantParams, EnvironmentParams, SkyParams,
+                 RectLightParams, DiscLightParams, SphereLightParams>;
 
 const Variants<AnyLightParams>& light_variants();
 

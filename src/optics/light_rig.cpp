@@ -14,12 +14,6 @@
 namespace gischt {
 namespace {
 
-Vec3f tint(const LightParams& light, double time) {
-    const Vec3d color = light.color.at(time);
-    const double kelvin = light.temperature.at(time);
-    return kelvin > 0 ? Vec3f(color) * blackbody_color(kelvin) : Vec3f(color);
-}
-
 Vec3d unit(const Vec3d& v, const LightParams& light, const char* what) {
     if (!(length(v) > 0)) {
         throw Error(ErrorKind::Usage, light.name.empty() ? "light" : "light '" + light.name + "'",
@@ -29,6 +23,12 @@ Vec3d unit(const Vec3d& v, const LightParams& light, const char* what) {
 }
 
 }  // namespace
+
+Vec3f light_tint(const LightParams& light, double time) {
+    const Vec3d color = light.color.at(time);
+    const double kelvin = light.temperature.at(time);
+    return kelvin > 0 ? Vec3f(color) * blackbody_color(kelvin) : Vec3f(color);
+}
 
 // Makes the lights of one moment, kind by kind.
 struct LightRig::Builder {
@@ -40,16 +40,17 @@ struct LightRig::Builder {
     template <class L>
     void add(L light, const LightParams& params, bool camera_visible) {
         light.name = params.name;
+        light.group = params.group;
         light.camera_visible = camera_visible;
         lights.push_back(std::make_shared<L>(std::move(light)));
     }
 
     void operator()(const PointParams& p) {
-        const Vec3f intensity = static_cast<float>(p.intensity.at(time)) * tint(p, time);
+        const Vec3f intensity = static_cast<float>(p.intensity.at(time)) * light_tint(p, time);
         if (max_component(intensity) > 0) add(PointLight(p.position.at(time), intensity), p, false);
     }
     void operator()(const SpotParams& p) {
-        const Vec3f intensity = static_cast<float>(p.intensity.at(time)) * tint(p, time);
+        const Vec3f intensity = static_cast<float>(p.intensity.at(time)) * light_tint(p, time);
         if (!(max_component(intensity) > 0)) return;
         const Vec3d position = p.position.at(time);
         const Vec3d axis = unit(p.target.at(time) - position, p, "the way from position to target");
@@ -57,7 +58,7 @@ struct LightRig::Builder {
         add(SpotLight(position, axis, intensity, outer * (1 - p.softness), outer), p, false);
     }
     void operator()(const SunParams& p) {
-        const Vec3f irradiance = static_cast<float>(p.irradiance.at(time)) * tint(p, time);
+        const Vec3f irradiance = static_cast<float>(p.irradiance.at(time)) * light_tint(p, time);
         if (!(max_component(irradiance) > 0)) return;
         const Vec3d towards = p.direction
                                   ? unit(p.direction->at(time), p, "the direction")
@@ -67,20 +68,21 @@ struct LightRig::Builder {
             p.camera_visible);
     }
     void operator()(const ConstantParams& p) {
-        const Vec3f radiance = static_cast<float>(p.radiance.at(time)) * tint(p, time);
+        const Vec3f radiance = static_cast<float>(p.radiance.at(time)) * light_tint(p, time);
         if (max_component(radiance) > 0) add(ConstantLight(radiance), p, p.camera_visible);
     }
     void operator()(const EnvironmentParams& p) {
-        const Vec3f scale = static_cast<float>(p.strength.at(time)) * tint(p, time);
+        const Vec3f scale = static_cast<float>(p.strength.at(time)) * light_tint(p, time);
         if (!(max_component(scale) > 0)) return;
         const Vec3d up = unit(p.up ? *p.up : rig.scene_up_, p, "up");
         const Transform turn = Transform::rotation({0, 0, 1}, radians(p.rotation_degrees.at(time)));
         add(EnvironmentLight(rig.maps_.at(p.file), up_frame(up) * turn, scale), p,
             p.camera_visible);
     }
+    void operator()(const AreaLightParams&) {}
     void operator()(const SkyParams& p) {
         const std::size_t index = sky_count++;
-        const Vec3f scale = static_cast<float>(p.strength.at(time)) * tint(p, time);
+        const Vec3f scale = static_cast<float>(p.strength.at(time)) * light_tint(p, time);
         if (!(max_component(scale) > 0)) return;
         const double elevation = p.elevation_degrees.at(time), azimuth = p.azimuth_degrees.at(time);
         // The dome's sun does not sink below the end of twilight.

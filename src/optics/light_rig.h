@@ -28,6 +28,7 @@ class LightRig {
     const std::vector<AnyLightParams>& params() const { return params_; }
 
     // The lights at one moment; lights without strength are left out, a sky with its sun is two.
+    // Lights that have a size are surfaces (optics/surface_rig.h) and not among them.
     // Not to be called by two threads at once. Throws Error{Usage} for a direction without length.
     std::vector<LightPtr> at(double time);
 
@@ -39,6 +40,9 @@ class LightRig {
     std::map<std::string, EnvironmentMap::Ptr> maps_;
     std::vector<std::pair<SkyState, Sky>> skies_;  // the last one of each sky light
 };
+
+// The colour of a light times that of its black body.
+Vec3f light_tint(const LightParams& light, double time);
 
 // The exposure in stops that shows a grey card (albedo 0.18) as middle grey (0.18) that lies at a
 // point without shadow and faces the light: half of the lights' fluence counts as its irradiance.

@@ -81,6 +81,16 @@ Medium::Medium(const Region& region, const MediumParams& params, double time, do
     }
 }
 
+Medium::Medium(const Layer& layer, const MediumParams& params, double time) {
+    take(params, time);
+    if (is_emissive()) {
+        throw Error(ErrorKind::Usage, "medium", "a layer cannot glow", "take emission 'none'");
+    }
+    shape_ = Shape::Layered;
+    layer_ = layer;
+    majorant_ = strength_ * density_scale_ * static_cast<float>(layer.greatest_density());
+}
+
 void Medium::take(const MediumParams& params, double time) {
     if (params.absorption && params.scattering) {
         cross_sections_ = {Vec3f(params.absorption->at(time)), Vec3f(params.scattering->at(time))};
@@ -88,7 +98,8 @@ void Medium::take(const MediumParams& params, double time) {
         const Vec3d extinction = params.extinction.at(time), albedo = params.albedo.at(time);
         cross_sections_ = {Vec3f(extinction * (Vec3d(1) - albedo)), Vec3f(extinction * albedo)};
     }
-    phase_ = make_phase(params.phase, params.g.at(time));
+    phase_ = make_phase(
+        {params.phase, params.g.at(time), params.g2, params.lobe_weight, params.droplet_diameter});
     multiple_scattering_ = params.multiple_scattering;
     density_scale_ = static_cast<float>(params.density_scale.at(time));
     strength_ = max_component(cross_sections_.extinction());
@@ -127,6 +138,7 @@ BrickVolume Medium::pack(const Frame& frame, const std::string& name, const Bric
 
 Box3d Medium::bounds() const {
     if (shape_ == Shape::Bricks) return density_.world_bounds();
+    if (layer_) return layer_->bounds();
     if (is_bounded()) return to_world_.bounds(unit_box);
     constexpr double never = std::numeric_limits<double>::infinity();
     return {Vec3d(-never), Vec3d(never)};
@@ -137,7 +149,7 @@ Medium::Lattice Medium::lattice() const {
         const Box3i& support = density_.support();
         return {density_.to_world(), {Vec3d(support.lo), Vec3d(support.hi)}};
     }
-    GISCHT_ASSERT(is_bounded());
+    GISCHT_ASSERT(has_lattice());
     const Box3d box = bounds();
     const double h = max_component(box.size()) / 64;
     return {Transform::scale_translate(h, box.lo), {{}, box.size() / Vec3d(h)}};
@@ -145,6 +157,7 @@ Medium::Lattice Medium::lattice() const {
 
 float Medium::density(const Vec3d& point) const {
     if (shape_ == Shape::Bricks) return density_scale_ * density_.sample(point);
+    if (layer_) return density_scale_ * static_cast<float>(layer_->density(point));
     const Vec3d p = to_unit_.point(point);
     const bool is_inside = shape_ == Shape::Box         ? max_component(abs(p)) <= 1
                            : shape_ == Shape::Ellipsoid ? dot(p, p) <= 1
@@ -205,7 +218,7 @@ SegmentWalk Medium::segments(const Ray& ray, BrickGrain grain) const {
 
 void Medium::densities(const MediumSegment& segment, std::span<const float> t, float* out) const {
     if (segment.brick < 0) {
-        std::fill_n(out, t.size(), density_scale_);
+        for (std::size_t i = 0; i < t.size(); ++i) out[i] = density_at(segment, t[i]);
         return;
     }
     density_.along(segment.brick, segment.entry, segment.step, t.data(), static_cast<int>(t.size()),
@@ -229,6 +242,11 @@ void Medium::emissions(const MediumSegment& segment, std::span<const float> t, c
 
 std::optional<float> Medium::optical_depth(const Ray& ray, double t0, double t1) const {
     if (shape_ == Shape::Bricks) return std::nullopt;
+    if (layer_) {
+        if (majorant_ == 0) return 0.0f;
+        return strength_ * density_scale_ *
+               static_cast<float>(layer_->column({ray.origin, ray.direction, t0, t1}));
+    }
     const Interval t = inside({ray.origin, ray.direction, t0, t1});
     if (t.is_empty() || majorant_ == 0) return 0.0f;
     return static_cast<float>((t.t1 - t.t0) * length(ray.direction) *
@@ -249,6 +267,10 @@ SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain)
         bricks_.emplace(medium.density_, ray, grain);
         return;
     }
+    if (medium.layer_) {
+        layer_.emplace(*medium.layer_, ray);
+        return;
+    }
     const Interval t = medium.inside(ray);
     done_ = t.is_empty();
     once_.t0 = once_.anchor = t.t0;
@@ -258,6 +280,7 @@ SegmentWalk::SegmentWalk(const Medium& medium, const Ray& ray, BrickGrain grain)
 }
 
 bool SegmentWalk::next(MediumSegment& segment) {
+    if (layer_) return next_of_layer(segment);
     if (!bricks_) {
         if (done_) return false;
         segment = once_;
@@ -280,6 +303,21 @@ bool SegmentWalk::next(MediumSegment& segment) {
         segment.emission_max = medium_->emission_bounds_[static_cast<std::size_t>(
             run.brick * Medium::bounds_per_brick + bound)];
     }
+    return true;
+}
+
+bool SegmentWalk::next_of_layer(MediumSegment& segment) {
+    LayerRun run;
+    if (!layer_->next(run)) return false;
+    const double scale = static_cast<double>(medium_->strength_ * medium_->density_scale_);
+    segment = {};
+    segment.t0 = segment.anchor = run.t0;
+    segment.t1 = run.t1;
+    segment.min = static_cast<float>(scale * run.min);
+    segment.mean = static_cast<float>(scale * run.mean);
+    segment.max = static_cast<float>(scale * run.max);
+    segment.entry = run.entry;
+    segment.step = run.step;
     return true;
 }
 

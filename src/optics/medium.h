@@ -9,6 +9,7 @@
 #include "grid/brick_volume.h"
 #include "grid/brick_walk.h"
 #include "optics/blackbody.h"
+#include "optics/layer.h"
 #include "optics/medium_params.h"
 #include "optics/phase.h"
 
@@ -75,6 +76,8 @@ class Medium {
     // Density 1 inside a region, nothing outside. Emission by blackbody takes `temperature` in K.
     // Throws Error{Usage} when the region has no volume, or no end but a glow.
     Medium(const Region& region, const MediumParams& params, double time, double temperature = 0);
+    // A layer, its density being the layer's. Throws Error{Usage} when it is to glow.
+    Medium(const Layer& layer, const MediumParams& params, double time);
 
     const CrossSections& cross_sections() const { return cross_sections_; }
     const PhaseFunction& phase() const { return phase_; }
@@ -89,17 +92,20 @@ class Medium {
     // Box around all that absorbs, scatters or glows, metres; empty where nothing does, infinite
     // where the medium has no end.
     Box3d bounds() const;
-    bool is_bounded() const { return shape_ != Shape::Everywhere; }
-    // Edge of the smallest detail in metres (a voxel), 0 for homogeneous media.
+    bool is_bounded() const {
+        return shape_ != Shape::Everywhere && (!layer_ || layer_->is_round());
+    }
+    // Edge of the smallest detail in metres (a voxel), 0 for media without a grid.
     double cell_size() const { return cell_size_; }
     // Where look-up grids are best laid: a map to metres whose integer points are the samples of
     // the density, and the box in it that holds everything. For homogeneous media the longest edge
-    // of the box counts 64. Only for bounded media.
+    // of the box counts 64. Only where has_lattice(): not for layers and media without end.
     struct Lattice {
         Transform to_world;
         Box3d box;
     };
     Lattice lattice() const;
+    bool has_lattice() const { return shape_ != Shape::Everywhere && shape_ != Shape::Layered; }
 
     // At a point in metres, for probes; along rays use segments.
     float density(const Vec3d& point) const;
@@ -119,21 +125,26 @@ class Medium {
                    Vec3f* out) const;
     // The same for one place, for trackers.
     float density_at(const MediumSegment& segment, float t) const {
-        if (segment.brick < 0) return density_scale_;
-        return density_scale_ * density_.at_local(segment.brick, segment.entry + t * segment.step);
+        if (segment.brick >= 0) {
+            return density_scale_ *
+                   density_.at_local(segment.brick, segment.entry + t * segment.step);
+        }
+        if (!layer_) return density_scale_;
+        return density_scale_ * density_on_run(layer_->profile(), layer_->is_round(), segment.entry,
+                                               segment.step, t);
     }
     Vec3f emission_at(const MediumSegment& segment, float t, float density) const {
         return is_emissive() ? glow(density, glow_at(segment, t)) : Vec3f{};
     }
     // Optical depth of the strongest channel, in which segments count, along a ray for t in
-    // [t0, t1]; the others are in the ratio of their extinction to strength(). Only for media that
-    // have it in closed form: homogeneous ones.
+    // [t0, t1]; the others are in the ratio of their extinction to strength(). Only for media
+    // without a grid: exact, over a sphere within 1e-7. May be infinite.
     std::optional<float> optical_depth(const Ray& ray, double t0, double t1) const;
 
   private:
     friend class SegmentWalk;
 
-    enum class Shape { Bricks, Box, Ellipsoid, Everywhere };
+    enum class Shape { Bricks, Box, Ellipsoid, Everywhere, Layered };
 
     Interval inside(const Ray& ray) const;
     void take(const MediumParams& params, double time);
@@ -153,6 +164,7 @@ class Medium {
     // Bounds of the emission by brick: eight of its blocks and one of the whole.
     static constexpr int bounds_per_brick = BrickVolume::brick_blocks + 1;
     std::vector<float> emission_bounds_;
+    std::optional<Layer> layer_;
     Transform to_world_, to_unit_;  // of a region: from [-1,1]^3 to metres and back
     float glow_elsewhere_ = 0;      // where glow_ has no brick: K of a region, a background
     CrossSections cross_sections_;
@@ -173,8 +185,11 @@ class SegmentWalk {
     bool next(MediumSegment& segment);
 
   private:
+    bool next_of_layer(MediumSegment& segment);
+
     const Medium* medium_;
     std::optional<BrickWalk> bricks_;
+    std::optional<LayerWalk> layer_;
     MediumSegment once_;  // the single run of a homogeneous medium
     bool done_ = false;
 };

@@ -60,7 +60,12 @@ const Table<MediumParams>& medium_table() {
                     {{"isotropic", PhaseKind::Isotropic, "equal in all directions"},
                      {"henyey_greenstein", PhaseKind::HenyeyGreenstein,
                       "forward or backward by the mean cosine g"},
-                     {"schlick", PhaseKind::Schlick, "a rational approximation of the former"}},
+                     {"schlick", PhaseKind::Schlick, "a rational approximation of the former"},
+                     {"rayleigh", PhaseKind::Rayleigh, "molecules: as much back as ahead"},
+                     {"two_lobe", PhaseKind::TwoLobe,
+                      "lobe_weight of Henyey-Greenstein with g, the rest with g2"},
+                     {"mie", PhaseKind::Mie,
+                      "water droplets of droplet_diameter (Jendersie & d'Eon 2023)"}},
                     {.help = "Phase function: where scattered light goes"})
             .add("g", &MediumParams::g,
                  {.help = "Mean cosine of scattering: 0 even, towards 1 forward (cloud 0.85), "
@@ -69,6 +74,20 @@ const Table<MediumParams>& medium_table() {
                   .max = 1,
                   .min_open = true,
                   .max_open = true})
+            .add("g2", &MediumParams::g2,
+                 {.help = "Mean cosine of the second lobe of phase 'two_lobe'",
+                  .min = -1,
+                  .max = 1,
+                  .min_open = true,
+                  .max_open = true})
+            .add("lobe_weight", &MediumParams::lobe_weight,
+                 {.help = "Share of the first lobe of phase 'two_lobe'", .min = 0, .max = 1})
+            .add("droplet_diameter", &MediumParams::droplet_diameter,
+                 {.unit = "micrometres",
+                  .help = "Diameter of the droplets of phase 'mie': fog and clouds 5 to 20, below "
+                          "0.1 almost Rayleigh",
+                  .min = MiePhase::least_diameter,
+                  .max = MiePhase::largest_diameter})
             .choice("emission", &MediumParams::emission,
                     {{"none", EmissionKind::None, "the fluid does not glow"},
                      {"blackbody", EmissionKind::Blackbody,

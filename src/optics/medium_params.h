@@ -34,6 +34,8 @@ struct MediumParams {
 
     PhaseKind phase = PhaseKind::HenyeyGreenstein;
     Keyed<double> g{0.0};
+    double g2 = -0.3, lobe_weight = 0.7;  // of two lobes: the second, the share of the first
+    double droplet_diameter = 10;         // micrometres, of the Mie phase
 
     EmissionKind emission = EmissionKind::None;
     Keyed<double> emission_scale{1.0};

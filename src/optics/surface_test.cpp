@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "optics/surface_params.h"
 
 namespace gischt {
 namespace {

@@ -7,9 +7,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/job.h"
-#include "image/filter.h"
+#include "image/film_state.h"
 #include "image/image.h"
 #include "optics/view.h"
 
@@ -28,11 +29,24 @@ struct RenderSettings {
     FilterKind filter = FilterKind::BlackmanHarris;
     double filter_radius = 0;  // pixels; 0: the filter's own
     bool preview = false;      // coarser numbers, the same picture
+    // With noise: parts of the picture that are good enough get no further samples.
+    bool adaptive = true;
+    std::vector<std::string> aovs;  // further layers, by the names of render/aov.h; "all"
 
     // Called about every partial_interval seconds with the picture so far, by one thread at a time;
     // null is allowed.
     std::function<void(const Image&)> on_partial;
     double partial_interval = 3;  // s
+
+    // Where the film is kept; null: nobody sees it. One that holds samples already is gone on with,
+    // to the same bits as if it had been made at once; it must have the view's size, the filter,
+    // the channels, and the samples [first_sample, n) of every pixel, n differing among them. After
+    // an Error{Cancelled} it can be gone on with later.
+    FilmState* film = nullptr;
+    // Called about every checkpoint_interval seconds when `film` is a good state to save, by one
+    // thread at a time; null is allowed.
+    std::function<void()> on_checkpoint;
+    double checkpoint_interval = 30;  // s
 };
 
 struct RenderStatistics {

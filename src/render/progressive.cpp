@@ -8,8 +8,12 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
+#include <utility>
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "render/tile_grid.h"
 
 namespace gischt {
 namespace {
@@ -46,60 +50,140 @@ class WorkerPool {
     std::vector<std::unique_ptr<PixelWorker>> idle_;
 };
 
+// Passes double, and grow by a quarter where one may be the last because of its noise.
+int next_goal(int goal, const RenderSettings& settings) {
+    const int next = settings.noise > 0 && goal >= 8 ? goal + goal / 4 : 2 * goal;
+    return std::min(next, settings.samples_per_pixel);
+}
+
+constexpr int first_adaptive_goal = 16;
+
 // One picture being made. A tile has a goal: the number of samples that its pixels shall have when
 // the pass is over. A pixel's own count tells which sample comes next, so that the work can be left
 // and taken up between any two samples.
 class Progression {
   public:
     Progression(const View& view, const RenderSettings& settings, const ProgressiveTask& task,
-                Job& job)
+                Job& job, FilmState& state)
         : view_(view),
           settings_(settings),
           task_(task),
           job_(job),
-          film_(view.width(), view.height(),
-                ReconstructionFilter(settings.filter, static_cast<float>(settings.filter_radius)),
-                task.extra_channels),
+          state_(state),
           pool_(task),
-          tiles_x_((view.width() + tile_edge - 1) / tile_edge),
-          tiles_y_((view.height() + tile_edge - 1) / tile_edge),
+          tiles_(view.width(), view.height(), tile_edge),
           start_(now_seconds()),
           next_partial_(settings.on_partial ? start_ + settings.partial_interval : never),
+          next_checkpoint_(settings.on_checkpoint ? start_ + settings.checkpoint_interval : never),
           stop_(settings.time_limit > 0 ? start_ + settings.time_limit : never) {}
 
     RenderResult run() {
-        for (int goal = 1; pass(goal); goal = next_goal(goal)) {
-            if (goal >= settings_.samples_per_pixel || now_seconds() >= stop_) break;
-            if (settings_.noise > 0 && goal > 1 && film_.noise() <= settings_.noise) break;
+        open_film();
+        taken_ = film().total_samples();
+        while (pass() && set_goals()) {
         }
         return result();
     }
 
   private:
-    // Passes double, and grow by a quarter where one may be the last: its noise is looked at.
-    int next_goal(int goal) const {
-        const int next = settings_.noise > 0 && goal >= 8 ? goal + goal / 4 : 2 * goal;
-        return std::min(next, settings_.samples_per_pixel);
+    Film& film() { return *state_.film; }
+
+    // Makes the film, or checks that the one there can be gone on with.
+    void open_film() {
+        const ReconstructionFilter filter(settings_.filter,
+                                          static_cast<float>(settings_.filter_radius));
+        state_.has_variance = task_.layout.variance;
+        state_.has_samples = task_.layout.samples;
+        if (!state_.film) {
+            state_.film.emplace(view_.width(), view_.height(), filter, task_.layout.channels);
+            state_.ranges.clear();
+            goals().assign(tiles_.count(), 1);
+            return;
+        }
+        const Film& old = film();
+        const bool fits = old.width() == view_.width() && old.height() == view_.height() &&
+                          old.filter().kind() == filter.kind() &&
+                          old.filter().radius() == filter.radius() &&
+                          old.extra_names() == task_.layout.channels;
+        const bool is_one_run =
+            state_.ranges.empty() ||
+            (state_.ranges.size() == 1 && state_.ranges[0].begin == settings_.first_sample);
+        const std::string holds = fmt::format("it holds the samples {}", to_text(state_.ranges));
+        if (!fits) fail("its size, filter or channels are others");
+        if (!is_one_run || goals().size() != tiles_.count())
+            fail(holds + " of a merge or of a part");
+        if (most_samples() > settings_.samples_per_pixel) fail(holds + ", more than asked for");
+        for (auto& goal : goals()) goal = std::clamp(goal, 1, settings_.samples_per_pixel);
+    }
+    [[noreturn]] static void fail(const std::string& what) {
+        throw Error(ErrorKind::Usage, "film", "cannot go on with the film: " + what,
+                    "--restart throws it away");
     }
 
-    // Brings all pixels to the goal; false when the time was up before.
-    bool pass(int goal) {
+    std::vector<std::int32_t>& goals() { return state_.tile_goals; }
+    std::int32_t goal() { return *std::max_element(goals().begin(), goals().end()); }
+    int most_samples() {
+        std::int32_t most = 0;
+        for (const FilmPixel& p : std::as_const(film()).pixels()) most = std::max(most, p.count);
+        return most;
+    }
+
+    // The goals of the next pass; false when there is none.
+    bool set_goals() {
+        const int now = goal(), next = next_goal(now, settings_);
+        if (now >= settings_.samples_per_pixel || now_seconds() >= stop_) return false;
+        if (settings_.noise > 0 && now > 1) {
+            const double noise = film().noise();
+            least_done_ = noise > 0 ? std::min(1.0, std::pow(settings_.noise / noise, 2)) : 1;
+            if (!settings_.adaptive && noise <= settings_.noise) return false;
+        }
+        if (!(settings_.noise > 0 && settings_.adaptive && now >= first_adaptive_goal)) {
+            goals().assign(tiles_.count(), next);
+            return true;
+        }
+        const std::vector<char> noisy = tiles_.noisy(film(), settings_.noise);
+        bool any = false;
+        for (std::size_t t = 0; t < noisy.size(); ++t) {
+            if (!noisy[t]) continue;
+            goals()[t] = next;
+            any = true;
+        }
+        return any;
+    }
+
+    // Brings all tiles to their goals; false when the time was up before.
+    bool pass() {
         const PhaseTimer timer(job_, task_.method);
-        goal_ = goal;
-        pending_.clear();
-        for (int t = 0; t < tiles_x_ * tiles_y_; ++t) pending_.push_back(t);
+        const double stop = goal() == 1 ? never : stop_;
+        pending_.resize(tiles_.count());
+        std::iota(pending_.begin(), pending_.end(), 0);
         while (true) {
-            const double stop = goal == 1 ? never : stop_;
-            work_until(std::min(next_partial_, stop));
+            work_until(std::min({next_partial_, next_checkpoint_, stop}));
+            note_range();
             job_.check();
             if (pending_.empty()) return true;
-            const double now = now_seconds();
-            if (now >= next_partial_) {
-                settings_.on_partial(film_.image());
-                next_partial_ = now_seconds() + settings_.partial_interval;
-            }
-            if (now >= stop) return false;
+            if (now_seconds() >= stop) return false;
+            show_and_save();
         }
+    }
+
+    void show_and_save() {
+        if (now_seconds() >= next_partial_) {
+            settings_.on_partial(state_.image());
+            next_partial_ = now_seconds() + settings_.partial_interval;
+        }
+        const double before = now_seconds();
+        if (before < next_checkpoint_) return;
+        settings_.on_checkpoint();
+        // At most a twentieth of the time goes into saving.
+        const double after = now_seconds();
+        next_checkpoint_ = after + std::max(settings_.checkpoint_interval, 20 * (after - before));
+    }
+
+    void note_range() {
+        const int first = settings_.first_sample, most = most_samples();
+        state_.ranges.clear();
+        if (most > 0) state_.ranges.push_back({first, first + most});
     }
 
     // Works on the pending tiles and drops those that are done.
@@ -123,21 +207,22 @@ class Progression {
 
     // False when it was left before its end.
     bool tile(PixelWorker& worker, int number, double pause) {
-        const int x0 = number % tiles_x_ * tile_edge, y0 = number / tiles_x_ * tile_edge;
-        const int x1 = std::min(x0 + tile_edge, view_.width()),
-                  y1 = std::min(y0 + tile_edge, view_.height());
-        std::vector<float> extra(task_.extra_channels.size());
-        for (int y = y0; y < y1; ++y) {
-            std::int64_t taken = 0;
-            for (int x = x0; x < x1; ++x) {
-                if (job_.is_cancelled() || now_seconds() >= pause) return false;
-                for (auto s = film_.samples(x, y); s < goal_; ++s, ++taken) {
-                    pixel(worker, x, y, static_cast<int>(s), extra);
+        const PixelTile area = tiles_.at(number);
+        const std::int64_t tile_goal = goals()[static_cast<std::size_t>(number)];
+        std::vector<float> extra(task_.layout.channels.size());
+        std::int64_t taken = 0;
+        bool whole = true;
+        for (int y = area.y0; y < area.y1 && whole; ++y) {
+            for (int x = area.x0; x < area.x1 && whole; ++x) {
+                for (auto s = film().samples(x, y); s < tile_goal && whole; ++s, ++taken) {
+                    // One sample may take long.
+                    whole = !job_.is_cancelled() && now_seconds() < pause;
+                    if (whole) pixel(worker, x, y, static_cast<int>(s), extra);
                 }
             }
-            report(taken);
         }
-        return true;
+        report(taken);
+        return whole;
     }
 
     void pixel(PixelWorker& worker, int x, int y, int sample, std::vector<float>& extra) {
@@ -148,33 +233,42 @@ class Progression {
         at.numbers = PixelSampler(settings_.seed, view_.frame, x, y, at.index);
         // The same places in every frame: the edges of what stands still do not flicker.
         const PixelSampler places(settings_.seed, 0, x, y, at.index);
-        const FilterSample place = film_.sample_filter(places.two(SampleDimension::Film));
+        const FilterSample place = film().sample_filter(places.two(SampleDimension::Film));
         at.film_x = x + 0.5 + static_cast<double>(place.offset.x);
         at.film_y = y + 0.5 + static_cast<double>(place.offset.y);
+        if (view_.camera.has_aperture()) at.lens = at.numbers.two(SampleDimension::Lens);
+        if (view_.shutter > 0) {
+            at.time = static_cast<double>(at.numbers.one(SampleDimension::Time));
+        }
 
         FilmSample out;
         std::fill(extra.begin(), extra.end(), 0.0f);
         worker.sample(at, out, extra);
         out.weight = place.weight;
-        film_.add(x, y, out, extra);
+        film().add(x, y, out, extra);
     }
 
     void report(std::int64_t taken) {
-        const std::int64_t all =
-            static_cast<std::int64_t>(view_.width()) * view_.height() * settings_.samples_per_pixel;
-        const std::int64_t done = taken_ += taken;
-        job_.progress(static_cast<double>(done) / static_cast<double>(all), task_.method);
+        const double all =
+            static_cast<double>(view_.width()) * view_.height() * settings_.samples_per_pixel;
+        double done = std::max(static_cast<double>(taken_ += taken) / all, least_done_.load());
+        if (stop_ < never) done = std::max(done, (now_seconds() - start_) / (stop_ - start_));
+        job_.progress(std::min(done, 1.0), task_.method);
     }
 
-    RenderResult result() const {
+    RenderResult result() {
         const double pixels = static_cast<double>(view_.width()) * view_.height();
         RenderResult out;
-        out.image = film_.image();
-        out.statistics.samples_per_pixel = static_cast<double>(film_.total_samples()) / pixels;
+        out.image = state_.image();
+        out.statistics.samples_per_pixel = static_cast<double>(film().total_samples()) / pixels;
         pool_.count(out.statistics);
-        const double noise = film_.noise();
+        const double noise = film().noise();
         out.statistics.noise = std::isfinite(noise) ? noise : 0;
         out.statistics.wall_seconds = now_seconds() - start_;
+        if (const std::int64_t rejected = film().rejected(); rejected > 0) {
+            job_.warn(fmt::format("{} samples were no numbers or out of range; they count as black",
+                                  rejected));
+        }
         Metadata& m = out.image.metadata;
         m.set("method", task_.method);
         m.set("samples", fmt::format("{}", out.statistics.samples_per_pixel));
@@ -186,20 +280,21 @@ class Progression {
     const RenderSettings& settings_;
     const ProgressiveTask& task_;
     Job& job_;
-    Film film_;
+    FilmState& state_;
     WorkerPool pool_;
-    int tiles_x_, tiles_y_;
-    double start_, next_partial_, stop_;  // of now_seconds()
-    int goal_ = 0;                        // samples per pixel when the pass is over
-    std::vector<int> pending_;            // tiles of this pass that are not done
-    std::atomic<std::int64_t> taken_{0};  // samples, for the progress
+    TileGrid tiles_;
+    double start_, next_partial_, next_checkpoint_, stop_;  // of now_seconds()
+    std::vector<int> pending_;                              // tiles of this pass that are not done
+    std::atomic<std::int64_t> taken_{0};                    // samples, for the progress
+    std::atomic<double> least_done_{0};                     // what the noise says of it
 };
 
 }  // namespace
 
 RenderResult render_progressively(const View& view, const RenderSettings& settings,
                                   const ProgressiveTask& task, Job& job) {
-    return Progression(view, settings, task, job).run();
+    FilmState own;
+    return Progression(view, settings, task, job, settings.film ? *settings.film : own).run();
 }
 
 }  // namespace gischt

@@ -5,12 +5,11 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "image/film.h"
 #include "math/pixel_sampler.h"
+#include "render/aov.h"
 #include "render/method.h"
 
 namespace gischt {
@@ -39,7 +38,7 @@ class PixelWorker {
   public:
     virtual ~PixelWorker() = default;
     // Fills `out` (black with alpha 1 when it comes; the weight is the loop's) and `extra`, one
-    // value per extra channel of the task, all 0 when it comes.
+    // value per channel of the task's layout, all 0 when it comes.
     virtual void sample(const PixelSample& at, FilmSample& out, std::span<float> extra) = 0;
 
     std::int64_t rays = 0, lookups = 0;  // for the statistics
@@ -47,18 +46,30 @@ class PixelWorker {
 
 // What a method gives to the loop. The worker may refer to the view.
 struct ProgressiveTask {
-    std::string_view method;                  // for the progress, times and metadata
-    std::vector<std::string> extra_channels;  // of the film, beside R, G, B, A, Z
+    std::string_view method;  // for the progress, times and metadata
+    AovLayout layout;         // of aov_layout: the film's channels beside R, G, B, A, Z
     // Called by several threads, one at a time.
     std::function<std::unique_ptr<PixelWorker>()> make_worker;
 };
 
-// Renders the samples [first, first + count) of every pixel of the view, in passes over the whole
-// picture that double. Stops earlier when the estimated noise or the time is reached. The time is
-// looked at after every pixel, but the first pass of one sample is always finished, so that the
-// picture has no holes. on_partial is called between pixels too, when a pass takes long.
-// Bits: the same for any number of threads; those of the time limit depend on the time.
-// Throws Error{Cancelled}, and what the worker throws.
+// Renders the samples [first_sample, first_sample + samples_per_pixel) of every pixel of the view,
+// in passes over the whole picture that double. Stops earlier when the noise or the time is
+// reached. The time is looked at after every pixel, but the first pass of one sample is always
+// finished, so that the picture has no holes. Partial pictures and checkpoints come between pixels
+// too, when a pass takes long.
+//
+// With settings.noise and settings.adaptive, from 16 samples on, a pass leaves out each tile of
+// 16x16 pixels that is good enough together with its eight neighbours: mean variance of the pixels'
+// means at most noise^2 * (mean luminance of the tile) * (that of the picture). When all tiles obey
+// that, the picture's own relative noise is at most `noise`, since the mean of the bounds is (noise
+// * mean)^2; dark parts may have less absolute, and more relative noise than bright ones, as the
+// eye sees it. Stopping by estimates from the samples themselves favours lucky ones; with at least
+// 16 * 256 samples per estimate, over nine tiles, that bias lies far below the noise asked for.
+//
+// Bits: the same for any number of threads, and when the work was cut short and taken up again;
+// those of a time limit depend on the time.
+// Throws Error{Cancelled}; Error{Usage} when settings.film cannot be gone on with; and what the
+// worker throws.
 RenderResult render_progressively(const View& view, const RenderSettings& settings,
                                   const ProgressiveTask& task, Job& job);
 

@@ -99,6 +99,19 @@ static std::string motion_text(const Value& whole) {
     return text;
 }
 
+// All that a sample of a pixel of one frame depends on.
+static std::string picture_text(Value whole) {
+    auto drop = [](Value& table, const char* key) {
+        std::erase_if(table.members(), [&](const Value::Member& m) { return m.key == key; });
+    };
+    for (const char* key : {"description", "frames"}) drop(whole, key);
+    if (Value* film = whole.find("film")) {
+        for (const char* key : {"exposure", "tone"}) drop(*film, key);
+    }
+    if (Value* render = whole.find("render")) drop(*render, "spp");
+    return to_inline_toml(whole);
+}
+
 LoadedScene load_scene_tree(const std::string& name, Value tree, const std::string& preset,
                             const std::vector<std::string>& overrides) {
     if (!preset.empty()) apply_preset(tree, preset);
@@ -108,6 +121,7 @@ LoadedScene load_scene_tree(const std::string& name, Value tree, const std::stri
     loaded.scene = read(tree, scene_table(), "");
     const Value whole = to_value(loaded.scene, scene_table());
     loaded.hash = hex(hash_bytes(to_inline_toml(whole)));
+    loaded.picture_hash = hex(hash_bytes(picture_text(whole)));
     loaded.motion_hash = hex(hash_bytes(motion_text(whole)));
     resolve_paths(tree, fs::current_path());
     loaded.toml = to_toml(tree);

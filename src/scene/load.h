@@ -12,7 +12,9 @@ namespace gischt {
 struct LoadedScene {
     std::string name;  // the file's stem or the built-in's name: names the output files
     Scene scene;
-    std::string hash;         // of the whole scene, defaults spelled out
+    std::string hash;          // of the whole scene, defaults spelled out
+    std::string picture_hash;  // of all but what a finished film can still be given another:
+                               // samples, exposure, tone, the range of frames
     std::string motion_hash;  // of what the simulation depends on: a cache belongs to it
     std::string toml;         // the scene with overrides, as a file
 };

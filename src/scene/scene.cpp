@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 
 #include "base/units.h"
+#include "render/aov.h"
 #include "schema/doc.h"
 
 namespace gischt {
@@ -64,7 +65,17 @@ const Table<FilmParams>& film_table() {
                  {.unit = "pixels",
                   .help = "Radius of the filter; 0 takes the filter's own",
                   .min = 0,
-                  .max = 16});
+                  .max = 16})
+            .add("shutter", &P::shutter,
+                 {.unit = "frames",
+                  .help = "How long the film is exposed, centred on the frame's moment: 0.5 is "
+                          "common in film; 0 makes no motion blur",
+                  .min = 0,
+                  .max = 16})
+            .add("aovs", &P::aovs,
+                 {.help = "Further layers of an EXR: direct, indirect, emission, albedo, normal, "
+                          "motion, transmittance, variance, samples; \"all\" for those that the "
+                          "method has"});
     return table;
 }
 
@@ -88,6 +99,12 @@ void check_scene(const Scene& s, const Fail& fail) {
     for (const MethodInfo& m : methods) names.emplace_back(m.name);
     if (std::ranges::find(names, s.render.method) == names.end()) {
         fail("render", "has no method '" + s.render.method + "'", hint_for(s.render.method, names));
+    }
+    std::vector<std::string> layers{"all"};
+    for (const AovInfo& info : aov_table()) layers.emplace_back(info.name);
+    for (const std::string& name : s.film.aovs) {
+        if (std::ranges::find(layers, name) == layers.end())
+            fail("film.aovs", "has no layer '" + name + "'", hint_for(name, layers));
     }
 }
 
@@ -126,6 +143,8 @@ const Table<Scene>& scene_table() {
             .add("gravity", &P::gravity,
                  {.unit = "m/s^2", .help = "Acceleration of gravity; by default 9.80665 downwards"})
             .list("fluid", &P::fluids, fluid_variants(), {.help = "The fluids"})
+            .list("medium", &P::media, placed_media_variants(),
+                  {.help = "Media that stand still: fog, air, a box of smoke"})
             .list("solid", &P::solids, surface_variants(),
                   {.help = "Solids: seen by the camera, casting shadows, and in the way of "
                            "simulated fluids"})

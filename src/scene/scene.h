@@ -14,7 +14,8 @@
 #include "optics/camera.h"
 #include "optics/light_params.h"
 #include "optics/medium_params.h"
-#include "optics/surface.h"
+#include "optics/placed_media.h"
+#include "optics/surface_params.h"
 #include "render/method.h"
 #include "render/params.h"
 #include "scene/file_source.h"
@@ -52,8 +53,8 @@ struct FilmParams {
     ToneKind tone = ToneKind::Filmic;
     FilterKind filter = FilterKind::BlackmanHarris;
     double filter_radius = 0;  // pixels; 0: the filter's own
-    double shutter =
-        0;  // share of a frame that the film is exposed; used by methods with motion blur
+    double shutter = 0;        // share of a frame that the film is exposed, centred on its moment
+    std::vector<std::string> aovs;  // further layers of an EXR, see render/aov.h
 };
 
 struct RenderSection {
@@ -72,6 +73,7 @@ struct Scene {
     std::int64_t seed = 0;
     std::optional<Vec3d> gravity;  // m/s^2; unset: 9.80665 downwards
     std::vector<FluidSection> fluids;
+    std::vector<PlacedMediumParams> media;  // that do not come from a fluid: fog, air
     std::vector<SurfaceParams>
         solids;  // seen by the camera, and in the way of every simulated fluid
     std::vector<AnyLightParams> lights;

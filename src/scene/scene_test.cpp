@@ -34,7 +34,7 @@ TEST(BuiltinScenes, AllAreValidAndDescribed) {
     for (const BuiltinScene& b : builtin_scenes()) {
         const LoadedScene s = load_scene(b.name, "", {});
         EXPECT_FALSE(s.scene.description.empty()) << b.name;
-        EXPECT_FALSE(s.scene.fluids.empty()) << b.name;
+        EXPECT_FALSE(s.scene.fluids.empty() && s.scene.media.empty()) << b.name;
         for (const FluidSection& f : s.scene.fluids) EXPECT_NE(make_source(s.scene, f), nullptr);
     }
 }
@@ -72,6 +72,33 @@ TEST(Scene, MessagesNamePlaceFactAndMend) {
     EXPECT_NE(message_of([] { load_scene("plme", "", {}); }).find("did you mean 'plume'?"),
               std::string::npos);
     EXPECT_NE(message_of([] { from_text("frames = [5, 2]\n"); }).find("first at most last"),
+              std::string::npos);
+}
+
+TEST(Scene, HoldsMediaWithoutAFluid) {
+    const char* text =
+        "[[medium]]\nname = \"mist\"\ntype = \"height_fog\"\nscale_height = 4\n"
+        "[[medium]]\ntype = \"atmosphere\"\n";
+    const LoadedScene s = from_text(text, {"medium.mist.extinction=0.5", "medium.1.turbidity=3"});
+    ASSERT_EQ(s.scene.media.size(), 2u);
+    const auto& fog = std::get<HeightFog>(s.scene.media[0]);
+    EXPECT_EQ(fog.scale_height.at(0), 4);
+    EXPECT_EQ(fog.medium.extinction.at(0), Vec3d(0.5));
+    EXPECT_EQ(fog.medium.albedo.at(0), Vec3d(0.99));
+    EXPECT_EQ(std::get<PlanetAir>(s.scene.media[1]).turbidity, 3);
+    Job job;
+    const View view = World(s.scene).view({}, 1, job);
+    EXPECT_EQ(view.media.size(), 4u);  // the air is three
+    // Without a section the word is the fluid's; with neither it is nobody's.
+    EXPECT_EQ(common_of(load_scene("plume", "", {"medium.g=0.25"}).scene.fluids[0]).medium.g.at(0),
+              0.25);
+    EXPECT_NE(message_of([] { from_text("", {"medium.g=0.2"}); }).find("has none"),
+              std::string::npos);
+    // The march must see an end.
+    RenderSettings settings;
+    EXPECT_NE(message_of([&] {
+                  make_method("march", {})->render(view, settings, job);
+              }).find("take method 'path'"),
               std::string::npos);
 }
 

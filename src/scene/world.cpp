@@ -72,14 +72,14 @@ Vec3d axis_angle_degrees(const Vec3d& euler) {
 struct SolidOf {
     Vec3d up;
 
-    SolidParams operator()(const SphereSurface& s) const {
+    std::optional<SolidParams> operator()(const SphereSurface& s) const {
         SolidParams p;
         p.kind = SolidKind::Sphere;
         p.position = s.center;
         p.radius = s.radius;
         return p;
     }
-    SolidParams operator()(const BoxSurface& s) const {
+    std::optional<SolidParams> operator()(const BoxSurface& s) const {
         SolidParams p;
         p.kind = SolidKind::Box;
         p.position = s.center;
@@ -88,14 +88,21 @@ struct SolidOf {
         for (Vec3d& v : p.rotation.v) v = axis_angle_degrees(v);
         return p;
     }
-    SolidParams operator()(const GroundSurface& s) const {
+    std::optional<SolidParams> operator()(const GroundSurface& s) const {
         SolidParams p;
         p.kind = SolidKind::Plane;
         p.position = s.point;
         p.normal = s.normal ? normalize(*s.normal) : up;
         return p;
     }
+    std::optional<SolidParams> operator()(const SheetPlace&) const { return std::nullopt; }
+    std::optional<SolidParams> operator()(const MeshSurface&) const { return std::nullopt; }
 };
+
+// What stands in the way of a simulated fluid; sheets have no inside that could.
+std::optional<SolidParams> solid_of(const SurfaceParams& s, const Vec3d& up) {
+    return std::visit(SolidOf{up}, s);
+}
 
 struct SourceOf {
     const Scene& scene;
@@ -105,7 +112,7 @@ struct SourceOf {
         world.fps = scene.fps;
         world.gravity = scene.gravity_vector();
         for (const SurfaceParams& s : scene.solids) {
-            world.solids.push_back(std::visit(SolidOf{scene.up_vector()}, s));
+            if (const auto solid = solid_of(s, scene.up_vector())) world.solids.push_back(*solid);
         }
         return std::make_unique<SmokeSource>(f.source, world);
     }
@@ -152,6 +159,7 @@ static void close_in(CameraParams& params, const View& view, const Framing& fram
             const Ray ray = camera.ray(x + 0.5, y + 0.5);
             double depth = 0;
             for (const auto& m : view.media) {
+                if (!m->has_lattice()) continue;
                 SegmentWalk walk = m->segments(ray);
                 for (MediumSegment s; walk.next(s);) depth += s.mean * (s.t1 - s.t0);
             }
@@ -176,7 +184,7 @@ CameraParams World::camera(const View& view) const {
     if (scene_.camera) return *scene_.camera;
     Box3d box = Box3d::empty();
     for (const auto& m : view.media) {
-        if (!m->bounds().is_empty()) box.extend(m->bounds());
+        if (m->has_lattice() && !m->bounds().is_empty()) box.extend(m->bounds());
     }
     if (box.is_empty()) return {};
     Framing framing;
@@ -208,6 +216,12 @@ View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int fr
         if (scene_.render.method == "field") continue;
         view.media.push_back(
             std::make_shared<Medium>(*view.frames[i], common.medium, view.time, job));
+    }
+    for (const PlacedMediumParams& m : scene_.media) {
+        if (scene_.render.method == "field") break;
+        for (auto& medium : place_media(m, view.time, scene_.up_vector())) {
+            view.media.push_back(std::move(medium));
+        }
     }
     view.lights = lights_.at(view.time);
     view.surfaces = SurfaceSet(scene_.solids, view.time, scene_.up_vector());

@@ -116,7 +116,9 @@ bool Override::belongs_to(const Value* members, const Addressing::Implied& impli
 }
 
 void Override::prepend_implied_root(const Value& scene, const Addressing& addressing) {
-    if (has(addressing.roots, words_.front())) return;
+    // A list of the scene's that it does not have gives way to a key of the same name in a member.
+    const bool is_absent = has(addressing.lists, words_.front()) && !scene.find(words_.front());
+    if (has(addressing.roots, words_.front()) && !is_absent) return;
     Words valid = addressing.roots;
     for (const Addressing::Implied& implied : addressing.implied) {
         const Value* members = scene.find(implied.root);
@@ -130,6 +132,7 @@ void Override::prepend_implied_root(const Value& scene, const Addressing& addres
         }
         valid.insert(valid.end(), implied.keys.begin(), implied.keys.end());
     }
+    if (is_absent) return;
     fail(fmt::format("unknown key '{}'", words_.front()), hint_for(words_.front(), valid));
 }
 
@@ -211,6 +214,9 @@ void add_keys(Words& keys, const Component& component) {
 Addressing addressing_of(const Component& scene, const std::vector<std::string>& implied_roots) {
     Addressing addressing;
     add_keys(addressing.roots, scene);
+    for (const Parameter& p : scene.parameters) {
+        if (p.form.list && p.component) addressing.lists.push_back(p.key);
+    }
     for (const std::string& root : implied_roots) {
         Words keys;
         const Parameter* p = scene.find(root);

@@ -18,6 +18,7 @@ struct Addressing {
         std::vector<std::string> keys;
     };
     std::vector<std::string> roots;  // the keys at the top of a scene
+    std::vector<std::string> lists;  // those of them that are lists of tables
     std::vector<Implied> implied;
 };
 
@@ -29,7 +30,8 @@ Addressing addressing_of(const Component& scene, const std::vector<std::string>&
 //   - A member of a list of tables is addressed by its `name` or its index (from 0), and needs
 //     neither where it is the only one: light.key.radiance, light.0.radiance, light.radiance.
 //   - A path that starts with no root belongs to the only member of an implied root, or to the
-//     member of that name: domain.resolution, lava.domain.resolution.
+//     member of that name: domain.resolution, lava.domain.resolution. So does one that starts with
+//     a list that the scene does not have: medium.g means the fluid's where there is no [[medium]].
 //   - VALUE is TOML; what is not TOML is a string, so that words and paths need no quotes.
 // Throws Error{Usage, "--set a.b.c=VALUE"}: no '=', no such root or member, several members, an
 // index out of range, broken TOML in brackets or quotes.

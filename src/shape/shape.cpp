@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shape/shape.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace gischt {
@@ -17,6 +19,21 @@ double distance(const SolidBox& b, const Vec3d& p) {
 
 double distance(const Plane& s, const Vec3d& p) {
     return dot(p - s.point, s.normal);
+}
+
+double distance(const Rectangle& r, const Vec3d& p) {
+    const Vec3d d = p - r.center;
+    const auto beyond = [&](const Vec3d& edge) {
+        const double l = length(edge);
+        return std::max(0.0, std::abs(dot(d, edge)) / l - 0.5 * l);
+    };
+    return length(Vec3d{beyond(r.edge_x), beyond(r.edge_y), dot(d, r.normal())});
+}
+
+double distance(const Disc& s, const Vec3d& p) {
+    const double h = dot(p - s.center, s.normal);
+    const double r = length(p - s.center - h * s.normal);
+    return std::hypot(h, std::max(0.0, r - s.radius));
 }
 
 std::optional<Hit> hit(const Sphere& s, const Ray& ray) {
@@ -59,7 +76,7 @@ std::optional<Hit> hit(const SolidBox& b, const Ray& ray) {
     const int axis = enters ? axis0 : axis1;
     Vec3d normal;
     normal[axis] = (d[axis] > 0) == enters ? -1 : 1;
-    return Hit{t, b.rotation.vector(normal)};
+    return Hit{t, b.rotation.vector(normal), 2 * axis + (normal[axis] > 0)};
 }
 
 std::optional<Hit> hit(const Plane& s, const Ray& ray) {
@@ -68,6 +85,22 @@ std::optional<Hit> hit(const Plane& s, const Ray& ray) {
     const double t = dot(s.point - ray.origin, s.normal) / slope;
     if (!(t >= ray.t_min && t <= ray.t_max)) return std::nullopt;
     return Hit{t, s.normal};
+}
+
+std::optional<Hit> hit(const Rectangle& r, const Ray& ray) {
+    const auto h = hit(Plane{r.center, r.normal()}, ray);
+    if (!h) return h;
+    const Vec3d d = ray.at(h->t) - r.center;
+    const bool is_inside = std::abs(dot(d, r.edge_x)) <= 0.5 * dot(r.edge_x, r.edge_x) &&
+                           std::abs(dot(d, r.edge_y)) <= 0.5 * dot(r.edge_y, r.edge_y);
+    return is_inside ? h : std::nullopt;
+}
+
+std::optional<Hit> hit(const Disc& s, const Ray& ray) {
+    const auto h = hit(Plane{s.center, s.normal}, ray);
+    if (!h) return h;
+    const Vec3d d = ray.at(h->t) - s.center;
+    return dot(d, d) <= s.radius * s.radius ? h : std::nullopt;
 }
 
 Box3d box(const Sphere& s) {
@@ -83,6 +116,19 @@ Box3d box(const SolidBox& b) {
 Box3d box(const Plane&) {
     constexpr double inf = std::numeric_limits<double>::infinity();
     return {Vec3d(-inf), Vec3d(inf)};
+}
+
+Box3d box(const Rectangle& r) {
+    const Vec3d half = 0.5 * (abs(r.edge_x) + abs(r.edge_y));
+    return {r.center - half, r.center + half};
+}
+
+Box3d box(const Disc& s) {
+    Vec3d half;
+    for (int a = 0; a < 3; ++a) {
+        half[a] = s.radius * std::sqrt(std::max(0.0, 1 - s.normal[a] * s.normal[a]));
+    }
+    return {s.center - half, s.center + half};
 }
 
 }  // namespace

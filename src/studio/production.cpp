@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "io/image_file.h"
 #include "io/mp4.h"
+#include "studio/film_keeper.h"
 
 namespace gischt {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ class Outputs {
     Outputs(const LoadedScene& scene, const Order& order, bool numbered)
         : scene_(scene), order_(order), numbered_(numbered) {
         for (const std::string& path : order.outputs) {
-            if (!is_movie(path) && !is_image_file(path)) {
+            if (!is_movie(path) && !is_image_file(path) && !is_film_file(path)) {
                 throw Error(ErrorKind::Usage, path, "has no extension that tells a format",
                             hint_for(fs::path(path).extension().string(), formats()));
             }
@@ -58,6 +59,14 @@ class Outputs {
     std::string path_of(const std::string& pattern, int frame) const {
         return numbered_ ? frame_path(pattern, frame).string() : pattern;
     }
+    // The `.film` files of a picture.
+    std::vector<std::string> films(int frame) const {
+        std::vector<std::string> paths;
+        for (const std::string& pattern : order_.outputs) {
+            if (is_film_file(pattern)) paths.push_back(path_of(pattern, frame));
+        }
+        return paths;
+    }
     // A picture that is still growing: shown in the .png files only.
     void show_partial(const Image& image, int frame) const {
         for (const std::string& pattern : order_.outputs) {
@@ -73,7 +82,7 @@ class Outputs {
                 movie(pattern, result.image).add(result.image);
             } else {
                 path = path_of(pattern, frame);
-                write_image(path, result.image, options(result.image));
+                if (!is_film_file(path)) write_image(path, result.image, options(result.image));
                 written.push_back(path);
             }
             run.images.push_back({path, result.image.metadata.get("method"), frame,
@@ -90,6 +99,7 @@ class Outputs {
   private:
     static std::vector<std::string> formats() {
         std::vector<std::string> list = image_extensions();
+        list.push_back(".film");
         list.push_back(".mp4");
         return list;
     }
@@ -129,22 +139,48 @@ RenderSettings settings_of(const Scene& scene, const Order& order) {
     s.filter = scene.film.filter;
     s.filter_radius = scene.film.filter_radius;
     s.preview = order.preview;
+    s.adaptive = order.adaptive;
+    s.aovs = scene.film.aovs;
     return s;
 }
 
-RenderResult render_with(const LoadedScene& scene, const View& view, const RenderSettings& settings,
-                         const Order& order, Job& job) {
-    const PhaseTimer timer(job, "render");
-    RenderResult result = make_method(scene.scene.render.method, scene.scene.render.methods)
-                              ->render(view, settings, job);
-    Metadata& m = result.image.metadata;
+// What the picture of a frame, or of a view of a turntable, says of itself.
+Metadata metadata_of(const LoadedScene& scene, const Order& order, int frame, int view) {
+    Metadata m;
     m.set("version", version);
     m.set("command", order.command);
     m.set("scene", scene.name);
     m.set("scene_hash", scene.hash);
     m.set("seed", std::to_string(scene.scene.seed));
-    m.set("frame", std::to_string(view.frame));
+    m.set("frame", std::to_string(frame));
+    if (order.turntable > 0) m.set("view", fmt::format("{}/{}", view, order.turntable));
     m.set("method", scene.scene.render.method);
+    return m;
+}
+
+// Beside that, what its film keeps: to be recognized, and developed as here.
+Metadata film_metadata(const LoadedScene& scene, const Order& order, Metadata m) {
+    m.set("picture_hash", scene.picture_hash);
+    m.set("preview", order.preview ? "true" : "false");
+    m.set("tone", tone_name(scene.scene.film.tone));
+    m.set("exposure", fmt::format("{}", scene.scene.film.exposure));
+    return m;
+}
+
+RenderResult render_with(const LoadedScene& scene, const View& view, RenderSettings settings,
+                         const Metadata& metadata, FilmKeeper& films, Job& job) {
+    const PhaseTimer timer(job, "render");
+    films.attach(settings);
+    RenderResult result;
+    try {
+        result = make_method(scene.scene.render.method, scene.scene.render.methods)
+                     ->render(view, settings, job);
+    } catch (const Error& e) {
+        if (e.kind() == ErrorKind::Cancelled) films.save();
+        throw;
+    }
+    films.finish(scene.scene.render.method);
+    for (const auto& [key, value] : metadata.entries) result.image.metadata.set(key, value);
     return result;
 }
 
@@ -193,7 +229,11 @@ std::vector<std::string> render(const LoadedScene& scene, const Order& order, Ru
         const JobPart rendering(job, 0.5, 1, "");
         RenderSettings settings = settings_of(scene.scene, order);
         settings.on_partial = [&](const Image& image) { outputs.show_partial(image, number); };
-        outputs.write(render_with(scene, view, settings, order, job), number, run, written);
+        const Metadata metadata = metadata_of(scene, order, view.frame, i + 1);
+        FilmKeeper films(outputs.films(number), film_metadata(scene, order, metadata),
+                         order.restart);
+        outputs.write(render_with(scene, view, settings, metadata, films, job), number, run,
+                      written);
     }
     for (FluidFrames& fluid : fluids) fluid.finish();
     outputs.finish(written);

@@ -14,11 +14,13 @@ namespace gischt {
 struct Order {
     FrameRange frames;
     int turntable = 0;  // > 0: this many views around one frame, in place of a sequence
-    std::vector<std::string> outputs;  // patterns of pictures (.png, .exr, .hdr) and movies (.mp4)
+    // Patterns of pictures (.png, .exr, .hdr), states to go on with (.film) and movies (.mp4).
+    std::vector<std::string> outputs;
     std::optional<std::filesystem::path> cache;
     bool restart = false;
     double noise = 0, time_limit = 0;  // as in RenderSettings; the time counts per picture
     int first_sample = 0;
+    bool adaptive = true;  // as in RenderSettings
     bool preview = false;
     std::string command;  // for the metadata of the pictures
 };

@@ -10,13 +10,15 @@
 namespace gischt {
 namespace {
 
+constexpr Aov march_aovs[] = {Aov::Transmittance};
 constexpr float least_opacity = 0.01f;  // below, nothing was hit
 
 class MarchWorker : public PixelWorker {
   public:
-    MarchWorker(const View& view, const MarchScene& scene) : view_(view), marcher_(scene) {}
+    MarchWorker(const View& view, const MarchScene& scene, const AovLayout& layout)
+        : view_(view), layout_(layout), marcher_(scene) {}
 
-    void sample(const PixelSample& at, FilmSample& out, std::span<float>) override {
+    void sample(const PixelSample& at, FilmSample& out, std::span<float> extra) override {
         const Ray ray = view_.camera.ray(at.film_x, at.film_y, at.lens, at.time);
         const MarchedRay seen = marcher_(ray, at.numbers);
         rays = marcher_.rays;
@@ -28,6 +30,7 @@ class MarchWorker : public PixelWorker {
         const float through =
             (seen.transmittance.x + seen.transmittance.y + seen.transmittance.z) / 3;
         out.alpha = 1 - through * (1 - behind.alpha);
+        AovLayout::add(extra, layout_.transmittance, seen.transmittance);
         if (seen.opacity > least_opacity) {
             out.depth = static_cast<float>(
                 view_.camera.depth(ray, static_cast<double>(seen.depth / seen.opacity)));
@@ -36,6 +39,7 @@ class MarchWorker : public PixelWorker {
 
   private:
     const View& view_;
+    const AovLayout& layout_;
     RayMarcher marcher_;
 };
 
@@ -53,7 +57,8 @@ class MarchMethod : public RenderMethod {
         const MarchScene scene(view, params_, job);
         ProgressiveTask task;
         task.method = "march";
-        task.make_worker = [&] { return std::make_unique<MarchWorker>(view, scene); };
+        task.layout = aov_layout(view, settings, {.method = "march", .aovs = march_aovs});
+        task.make_worker = [&] { return std::make_unique<MarchWorker>(view, scene, task.layout); };
         RenderResult result = render_progressively(view, settings, task, job);
         result.statistics.wall_seconds = now_seconds() - start;
         return result;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/march/march_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "optics/local_lights.h"
+#include "optics/material.h"
 
 namespace gischt {
 namespace {
@@ -14,7 +17,7 @@ constexpr float least_narrow_pdf = 100;  // 1/sr
 
 std::optional<NarrowLight> as_narrow(const Light& light) {
     NarrowLight narrow{&light, light.is_infinite(), {}, {}};
-    if (!light.is_infinite()) return narrow;
+    if (!light.is_infinite()) return light.is_delta() ? std::optional(narrow) : std::nullopt;
     const LightSample sample = light.sample({}, {0, 0});
     const bool is_small_disc =
         dynamic_cast<const SunLight*>(&light) && sample.pdf > least_narrow_pdf;
@@ -22,6 +25,20 @@ std::optional<NarrowLight> as_narrow(const Light& light) {
     narrow.direction = sample.direction;
     narrow.weight = sample.weight;
     return narrow;
+}
+
+// Surfaces that light passes, or is mirrored by, would need rays of their own at each hit.
+void refuse_unknown_surfaces(const SurfaceSet& surfaces) {
+    for (int i = 0; i < surfaces.size(); ++i) {
+        const SurfaceInfo& info = surfaces.info(i);
+        const bool is_special = info.holdout || info.shadow_catcher;
+        if (info.material == MaterialKind::Lambert && !is_special) continue;
+        throw Error(ErrorKind::Usage, "march",
+                    fmt::format("solid '{}' {}", info.name,
+                                is_special ? "is a holdout or shadow catcher"
+                                           : "scatters light in another way than Lambert's"),
+                    "take method 'path'");
+    }
 }
 
 }  // namespace
@@ -37,6 +54,7 @@ double grid_spacing(const Medium& medium, double least, std::int64_t most) {
 
 MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job& job)
     : view(the_view), params(the_params) {
+    refuse_unknown_surfaces(view.surfaces);
     for (const LightPtr& light : view.lights) {
         if (const auto one = as_narrow(*light)) {
             narrow.push_back(*one);
@@ -50,6 +68,11 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
     }
     is_grey = true;
     for (const auto& medium : view.media) {
+        if (!medium->has_lattice()) {
+            throw Error(ErrorKind::Usage, "march",
+                        "a medium has no end, or is as large as a planet",
+                        "give the fog a box, or take method 'path'");
+        }
         MarchMedium m;
         m.medium = medium.get();
         m.extinction = medium->cross_sections().extinction();

@@ -10,6 +10,7 @@
 #include "math/quadrature.h"
 #include "optics/environment.h"
 #include "optics/local_lights.h"
+#include "optics/surface_params.h"
 #include "render/march/ray_march.h"
 #include "render/march/sky_directions.h"
 

@@ -11,6 +11,13 @@ PhaseFunction widened(const PhaseFunction& phase, double factor) {
     if (const auto* schlick = std::get_if<SchlickPhase>(&phase)) {
         return SchlickPhase{schlick->k * f};
     }
+    if (const auto* lobes = std::get_if<TwoLobePhase>(&phase)) {
+        return TwoLobePhase{{lobes->first.g * f}, {lobes->second.g * f}, lobes->weight};
+    }
+    if (const auto* mie = std::get_if<MiePhase>(&phase)) {
+        const double g = static_cast<double>(mie->rest.g), a = static_cast<double>(mie->rest.alpha);
+        return MiePhase{{mie->peak.g * f}, DrainePhase::of(g * factor, a * factor), mie->weight};
+    }
     return phase;
 }
 

@@ -89,7 +89,7 @@ MarchedRay RayMarcher::operator()(const Ray& camera_ray, const PixelSampler& sam
     step_ = 0;
     ++rays;
     Ray ray = camera_ray;
-    const auto hit = scene_.view.surfaces.intersect(ray);
+    const auto hit = scene_.view.surfaces.intersect(ray, 0.5f, RayKind::Camera);
     if (hit) ray.t_max = hit->t;
     prepare_lights(ray, sampler);
 

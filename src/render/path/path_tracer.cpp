@@ -15,12 +15,12 @@ enum : std::uint32_t {
     DimensionDistance = SampleDimension::Free,
     DimensionSplit,
     DimensionHero,
-    DimensionTurn,  // two per split, the first splits only
+    DimensionTurn,  // the first turns and flights of a path
     DimensionStream = 1000
 };
 
 RandomStream stream_of(const PixelSampler& sampler, std::uint32_t branch) {
-    return {sampler.stream_key(DimensionStream + branch)};
+    return {sampler.stream_key(DimensionStream + branch), 0, sampler, DimensionTurn};
 }
 
 }  // namespace
@@ -99,16 +99,15 @@ void PathTracer::see_through_profile(const Ray& ray, const PixelSampler& sampler
         result.opacity += share;
     }
     // Paths go on from some of the points, evenly chosen.
-    const Vec2f pick = sampler.two(DimensionSplit);
     const auto n = static_cast<float>(points_.size());
     const int splits = std::min(scene_.params.splits, static_cast<int>(points_.size()));
     for (int k = 0; k < splits; ++k) {
-        const float at = (static_cast<float>(k) + pick.x) * n / static_cast<float>(splits);
-        Vertex v = vertex_at(points_[std::min(static_cast<std::size_t>(at), points_.size() - 1)]);
+        const PixelSampler numbers =
+            sampler.part(static_cast<std::uint32_t>(splits), static_cast<std::uint32_t>(k));
+        const auto pick = static_cast<std::size_t>(numbers.one(DimensionSplit) * n);
+        Vertex v = vertex_at(points_[std::min(pick, points_.size() - 1)]);
         v.weight.weight *= n / static_cast<float>(splits);
-        random = stream_of(sampler, 2 + static_cast<std::uint32_t>(k));
-        random.lead(sampler.two(DimensionTurn + static_cast<std::uint32_t>(2 * k)),
-                    sampler.two(DimensionTurn + static_cast<std::uint32_t>(2 * k + 1)));
+        random = stream_of(numbers, 2);
         result.radiance += follow(v, random);
     }
 }
@@ -154,7 +153,7 @@ Vec3f PathTracer::follow(Vertex v, RandomStream& random) {
         const Medium& medium = *scene_.media[v.medium];
         const bool is_last = v.events >= depth_;
         if (!is_last) sum += from_halo(v, random.branch(1));
-        const PhaseSample next = sample(medium.phase(), v.forward, random.two());
+        const PhaseSample next = sample(medium.phase(), v.forward, random.leading_two());
         Ray ray{v.point, Vec3d(next.direction)};
         ++rays_;
         const auto hit = scene_.view.surfaces.intersect(ray);
@@ -214,7 +213,7 @@ Vec3f PathTracer::follow_surface(const SurfaceHit& hit, const Vec3f&, PathWeight
     for (const Light* l : scene_.broad) light += arrives(l->sample(hit.point, random.two()), 1);
     sum += weight.value() * light;
 
-    const Vec2f u = random.two();
+    const Vec2f u = random.leading_two();
     const double r = std::sqrt(static_cast<double>(u.x)), turn = 2 * pi * static_cast<double>(u.y);
     Vec3d s, t;
     orthonormal_frame(hit.normal, s, t);

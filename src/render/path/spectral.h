@@ -4,35 +4,35 @@
 #include <cstdint>
 
 #include "base/random.h"
+#include "math/pixel_sampler.h"
 #include "math/vec.h"
 
 namespace gischt {
 
-// A stream of random numbers without end, a pure function of its key. A few numbers from elsewhere
-// (stratified ones) may lead it.
+// The random numbers of a path, a pure function of its keys: a stream without end, and stratified
+// ones for the first turns and flights, which matter most.
 struct RandomStream {
     std::uint64_t key = 0;
     std::uint32_t count = 0;
-    std::uint32_t leading = 0;  // numbers of lead_ still to come
-    Vec2f lead_[2] = {};
+    PixelSampler sampler = {};
+    std::uint32_t dimension = last_leading;  // the next stratified one
+    static constexpr std::uint32_t last_leading = 10;
 
-    // The next two calls of two() or next() give these.
-    void lead(Vec2f first, Vec2f second) {
-        lead_[0] = second;
-        lead_[1] = first;
-        leading = 2;
-    }
     // Another stream for something that happens at this point.
     RandomStream branch(std::uint64_t name) const { return {random_key(key, count, name)}; }
-    float next() {
-        if (leading > 0) return lead_[--leading].x;
-        return random_uniform(key, count++);
-    }
+
+    float next() { return random_uniform(key, count++); }
     Vec2f two() {
-        if (leading > 0) return lead_[--leading];
         const std::uint64_t bits = mix64(key + 0x9e3779b97f4a7c15ULL * ++count);
         return {static_cast<float>(bits >> 40) * 0x1p-24f,
                 static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24f};
+    }
+    // For a turn and for a flight.
+    float leading() {
+        return dimension < last_leading ? sampler.one(dimension++) : next();
+    }
+    Vec2f leading_two() {
+        return dimension < last_leading ? sampler.two(dimension++) : two();
     }
 };
 

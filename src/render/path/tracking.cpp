@@ -84,9 +84,9 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
 
 bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& random,
                   Collision& end, Vec3f* emission) {
-    MediaWalk walk(media, ray);
+    MediaWalk walk(media, ray, BrickGrain::Bricks);
     MediaRun run;
-    float depth_to_go = exponential(random.next());
+    float depth_to_go = exponential(random.leading());
     while (walk.next(run)) {
         const float majorant = with_floor(run, is_emissive);
         if (majorant == 0) continue;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "base/error.h"
+#include "command.h"
+#include "io/image_file.h"
+#include "studio/film_keeper.h"
+
+namespace gischt {
+namespace {
+
+struct MergeOptions {
+    std::vector<std::string> films, outputs;
+};
+
+FilmFile merge_films(const std::vector<std::string>& paths) {
+    FilmFile sum = read_film(paths[0]);
+    for (std::size_t i = 1; i < paths.size(); ++i) {
+        const FilmFile part = read_film(paths[i]);
+        std::string key;
+        if (!is_same_picture(sum.metadata, part.metadata, key)) {
+            throw Error(ErrorKind::Input, paths[i],
+                        fmt::format("is of another picture than {}: its {} is '{}', not '{}'",
+                                    paths[0], key, part.metadata.get(key), sum.metadata.get(key)));
+        }
+        try {
+            sum.state.merge(part.state);
+        } catch (const Error& e) {
+            throw Error(e.kind(), paths[i], e.fact(), e.hint());
+        }
+    }
+    return sum;
+}
+
+void write_merged(const std::string& path, const FilmFile& film) {
+    if (is_film_file(path)) return write_film(path, film.state, film.metadata);
+    Image image = film.state.image();
+    const Film& f = *film.state.film;
+    image.metadata = film.metadata;
+    image.metadata.set("samples", fmt::format("{}", static_cast<double>(f.total_samples()) /
+                                                        static_cast<double>(image.pixel_count())));
+    WriteOptions options;
+    if (const std::string tone = film.metadata.get("tone"); !tone.empty())
+        options.display.tone = tone_kind(tone);
+    if (const std::string stops = film.metadata.get("exposure"); !stops.empty())
+        options.display.exposure = std::strtod(stops.c_str(), nullptr);
+    write_image(path, image, options);
+}
+
+int merge(const MergeOptions& options, const std::string& command) {
+    for (const std::string& path : options.outputs) {
+        if (is_film_file(path) || is_image_file(path)) continue;
+        std::vector<std::string> formats = image_extensions();
+        formats.push_back(".film");
+        throw Error(ErrorKind::Usage, path, "has no extension that tells a format",
+                    hint_for(path.substr(std::min(path.rfind('.'), path.size())), formats));
+    }
+    FilmFile sum = merge_films(options.films);
+    sum.metadata.set("command", command);
+    for (const std::string& path : options.outputs) {
+        write_merged(path, sum);
+        fmt::print("{}\n", path);
+    }
+    return 0;
+}
+
+}  // namespace
+
+// gischt merge A.film B.film ... -o OUT
+void add_merge(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<MergeOptions>();
+    CLI::App* sub = app.add_subcommand(
+        "merge", "Add films of different samples of one picture, or develop one");
+    sub->add_option("FILMS", options->films, "Films (.film) that `render --samples` wrote")
+        ->required();
+    sub->add_option("-o,--output", options->outputs,
+                    "Film (.film) or picture (.png, .exr, .hdr); repeatable")
+        ->required()
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    sub->callback([options, &context] {
+        context.action = [options, &context] { return merge(*options, context.command_line); };
+    });
+}
+
+}  // namespace gischt
