@@ -232,7 +232,9 @@ class Progression {
         at.y = y;
         at.index = static_cast<std::uint32_t>(settings_.first_sample + sample);
         at.numbers = PixelSampler(settings_.seed, view_.frame, x, y, at.index);
-        const FilterSample place = film().sample_filter(at.numbers.two(SampleDimension::Film));
+        // The same places in every frame: the edges of what stands still do not flicker.
+        const PixelSampler places(settings_.seed, 0, x, y, at.index);
+        const FilterSample place = film().sample_filter(places.two(SampleDimension::Film));
         at.film_x = x + 0.5 + static_cast<double>(place.offset.x);
         at.film_y = y + 0.5 + static_cast<double>(place.offset.y);
         if (view_.camera.has_aperture()) at.lens = at.numbers.two(SampleDimension::Lens);
