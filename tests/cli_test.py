@@ -196,6 +196,87 @@ class Work(CliCase):
         self.assertEqual(self.files(), [])
 
 
+class Films(CliCase):
+    SCENE = ["cloud", "--set", "fluid.resolution=24", "--set", "film.height=32", "--set", "film.width=48"]
+
+    def render(self, *arguments, status=0):
+        return self.run_gischt("render", *self.SCENE, *arguments, status=status)
+
+    def pixels_of(self, name):
+        """The bytes of a film behind its head, which tells the command."""
+        return (self.dir / name).read_bytes()[-48 * 32 * 30:-8]
+
+    def test_parts_merge_to_the_bits_of_the_whole(self):
+        self.render("--spp", 64, "-o", "whole.exr", "-o", "whole.film")
+        parts = []
+        for first in (48, 0, 32, 16):
+            parts.append(f"p{first}.film")
+            self.render("--samples", f"{first}:{first + 16}", "-o", parts[-1], "--threads", 1 + first // 16 % 2)
+        self.run_gischt("merge", *parts, "-o", "sum.exr", "-o", "sum.film", "-o", "sum.png")
+        self.run_gischt("compare", "sum.exr", "whole.exr", "--tol", 0)
+        self.assertEqual(self.pixels_of("sum.film"), self.pixels_of("whole.film"))
+        self.assertIn("samples 0:64\n", self.run_gischt("info", "sum.film").stdout)
+        # The sum can be gone on with; the same samples cannot be counted twice.
+        self.render("--spp", 72, "-o", "sum.film", "-o", "more.exr")
+        self.render("--spp", 72, "-o", "fresh.exr")
+        self.run_gischt("compare", "more.exr", "fresh.exr", "--tol", 0)
+        error = self.run_gischt("merge", parts[0], parts[0], "-o", "x.exr", status=3).stderr
+        self.assertIn("48:64", error)
+        self.assertFalse((self.dir / "x.exr").exists())
+
+    def test_interrupted_renders_go_on_to_the_same_bits(self):
+        for flags in (["--spp", 1500], ["--noise", "0.006"]):
+            self.render(*flags, "-o", "whole.exr", "--restart")
+            stops = 0
+            for attempt in range(4):
+                process = subprocess.Popen([GISCHT, "render", *self.SCENE, *map(str, flags), "-o", "x.film", "-o", "x.exr", "-q"],
+                                           cwd=self.dir)
+                time.sleep(0.5 + 0.3 * attempt)
+                process.send_signal((signal.SIGINT, signal.SIGTERM)[attempt % 2])
+                stops += process.wait(timeout=30) == 130
+            self.assertGreater(stops, 0)
+            self.render(*flags, "-o", "x.film", "-o", "x.exr")
+            self.run_gischt("compare", "x.exr", "whole.exr", "--tol", 0)
+            self.assertEqual(self.files(), ["whole.exr", "x.exr", "x.film"])
+            (self.dir / "x.film").unlink()
+
+    def test_films_of_other_pictures_are_refused(self):
+        self.render("--spp", 2, "-o", "a.film")
+        for other in (["--seed", 5], ["--set", "film.width=32"], ["--set", "fluid.seed=7"]):
+            self.render("--spp", 4, "-o", "a.film", *other, status=2)
+            self.render("--samples", "2:4", "-o", "b.film", *other)
+            self.run_gischt("merge", "a.film", "b.film", "-o", "x.film", status=3)
+            (self.dir / "b.film").unlink()
+        self.render("--spp", 1, "-o", "a.film", status=2)  # it has more already
+        self.render("--spp", 1, "-o", "a.film", "--restart")
+        self.render("--samples", "8:9", "-o", "a.film", status=2)
+        # What only shows the picture may change.
+        self.render("--spp", 2, "-o", "a.film", "-o", "a.png", "--exposure", 1)
+        whole = (self.dir / "a.film").read_bytes()
+        for name, content in {"empty.film": b"", "short.film": whole[:-100], "noise.film": b"x" * 500}.items():
+            self.write(name, content)
+            for command in (["render", *self.SCENE, "-o", name], ["merge", "a.film", name, "-o", "y.film"], ["info", name]):
+                self.assertIn(name, self.run_gischt(*command, status=3).stderr)
+        self.run_gischt("render", "smoke-2d", "--set", "domain.resolution=16", "--frames", 1, "-o", "f.film", status=2)
+        self.run_gischt("merge", "a.film", "-o", "y.jpg", status=2)
+
+    def test_layers_of_an_exr(self):
+        self.render("--spp", 4, "--set", 'film.aovs=["all"]', "-o", "a.exr")
+        channels = self.run_gischt("info", "a.exr").stdout.splitlines()[0]
+        for name in ("samples.Y", "variance.Y", "transmittance.R"):
+            self.assertIn(name, channels)
+        error = self.render("--spp", 1, "--set", 'film.aovs=["indirect"]', "-o", "a.exr", status=2).stderr
+        self.assertIn("indirect", error)
+        error = self.render("--spp", 1, "--set", 'film.aovs=["smaples"]', "-o", "a.exr", status=2).stderr
+        self.assertIn("did you mean 'samples'", error)
+
+    def test_time_limit_is_kept(self):
+        self.render("--time", "2s", "-o", "a.exr", "--stats", "s.json")
+        seconds = json.loads((self.dir / "s.json").read_text())["images"][0]["wall_seconds"]
+        self.assertGreater(seconds, 1.9)
+        self.assertLess(seconds, 3)
+
+
 if __name__ == "__main__":
     GISCHT = os.path.abspath(sys.argv[1])
     unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)

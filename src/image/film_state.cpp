@@ -72,16 +72,11 @@ void FilmState::merge(const FilmState& other) {
     if (!same_filter(film->filter(), other.film->filter())) {
         throw Error(ErrorKind::Input, "film", "the reconstruction filters differ");
     }
-    const bool whole = is_complete() && other.is_complete();
     film->merge(*other.film);
     ranges = std::move(all);
     has_variance = has_variance || other.has_variance;
     has_samples = has_samples || other.has_samples;
-    // A single complete range can be gone on with; else nobody knows which samples a pixel lacks.
-    if (whole && ranges.size() == 1 && !tile_goals.empty())
-        std::fill(tile_goals.begin(), tile_goals.end(), ranges[0].end - ranges[0].begin);
-    else
-        tile_goals.clear();
+    tile_goals.clear();
 }
 
 std::string to_text(const std::vector<SampleRange>& ranges) {

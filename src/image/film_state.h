@@ -22,7 +22,8 @@ struct FilmState {
     // the picture sampled adaptively, some pixels have only the first ones of a range.
     std::vector<SampleRange> ranges;
     // Samples that the pixels of each tile shall have when the pass is over, as the loop of
-    // render/progressive.h wants it; empty after a merge.
+    // render/progressive.h wants it. Empty after a merge: then the film can be gone on with when
+    // it is complete, else nobody knows which samples a pixel lacks.
     std::vector<std::int32_t> tile_goals;
     // Layers of the picture that come from the film itself.
     bool has_variance = false, has_samples = false;

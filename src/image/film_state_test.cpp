@@ -26,17 +26,10 @@ TEST(FilmState, MergesRangesInAnyOrder) {
     FilmState state = part(8, 12);
     state.merge(part(0, 4));
     EXPECT_EQ(to_text(state.ranges), "0:4, 8:12");
-    EXPECT_TRUE(state.tile_goals.empty());  // nothing that one run would make
     state.merge(part(4, 8));
     EXPECT_EQ(to_text(state.ranges), "0:12");
     EXPECT_TRUE(state.is_complete());
     EXPECT_EQ(state.image(), part(0, 12).image());
-}
-
-TEST(FilmState, TwoPartsOfOneRunCanBeGoneOnWith) {
-    FilmState state = part(0, 4);
-    state.merge(part(4, 10));
-    EXPECT_EQ(state.tile_goals, std::vector<std::int32_t>{10});
 }
 
 TEST(FilmState, RefusesSamplesThatWouldCountTwice) {
@@ -60,7 +53,7 @@ TEST(FilmState, KnowsWhetherPixelsLackSamples) {
     state.ranges = {{0, 5}};
     EXPECT_FALSE(state.is_complete());
     state.merge(part(5, 6));
-    EXPECT_TRUE(state.tile_goals.empty());
+    EXPECT_FALSE(state.is_complete());
     state.has_samples = state.has_variance = true;
     const Image image = state.image();
     EXPECT_EQ(image.channel("samples.Y")[0], 5);

@@ -13,7 +13,8 @@ struct ExrOptions {
     // channel whose largest value is outside [0.0625, 65504] is written as float all the same: half
     // would lose its dark parts or turn into infinity.
     bool half = true;
-    std::vector<std::string> float_channels{"Z"};  // always 32 bits
+    // Always 32 bits: lengths, counts, and what is taken differences of.
+    std::vector<std::string> float_channels{"Z", "motion.X", "motion.Y", "variance.Y", "samples.Y"};
 };
 
 // OpenEXR with ZIP compression, scanlines from the top, Rec.709 chromaticities; the metadata as

@@ -29,15 +29,13 @@ std::uint32_t spread_bits(std::uint32_t x) {
     return (x | x << 1) & 0x55555555u;
 }
 
-// S p as digits after the point. C(i+k, i) is odd when i and k share no bit (Kummer 1852): digit i
-// sums the digits k of p within the complement of i, and digit i is bit 31 - i, the complement of
-// i. So bit b of the result sums the bits k of p whose number k is contained in b.
-std::uint32_t symmetric_pascal(std::uint32_t p) {
-    p ^= (p & 0x55555555u) << 1;
-    p ^= (p & 0x33333333u) << 2;
-    p ^= (p & 0x0f0f0f0fu) << 4;
-    p ^= (p & 0x00ff00ffu) << 8;
-    return p ^ p << 16;
+// Bit i of the result is the sum (mod 2) of the bits k of x whose number is contained in that of i.
+std::uint32_t sum_over_subsets(std::uint32_t x) {
+    x ^= (x & 0x55555555u) << 1;
+    x ^= (x & 0x33333333u) << 2;
+    x ^= (x & 0x0f0f0f0fu) << 4;
+    x ^= (x & 0x00ff00ffu) << 8;
+    return x ^ x << 16;
 }
 
 std::uint32_t low(std::uint64_t x) {
@@ -51,16 +49,35 @@ std::uint64_t seed_bits(std::uint64_t key, std::uint32_t i) {
     return mix64(key + 0x9e3779b97f4a7c15ULL * (i + 1ULL));
 }
 
-// The index of the sample and the place of the pixel as one dimension sees them. Both orders are
-// shuffled without leaving their blocks of 2^j, else the dimensions of a pixel would be correlated.
+// The index of the sample, and the place of the pixel in reversed digits, as one dimension sees
+// them. Both orders are shuffled without leaving their blocks of 2^j (owen_scramble), else the
+// dimensions of a pixel would be correlated.
 struct Ordered {
-    std::uint32_t sample, pixel;
+    std::uint32_t sample, reversed_pixel;
 };
 
-Ordered shuffle(std::uint64_t bits, std::uint32_t index, std::uint32_t order) {
+Ordered shuffle(std::uint64_t bits, std::uint32_t reversed_index, std::uint32_t reversed_order) {
     // Rows or columns first: without this the blocks of an odd power of 2 would all lie.
-    if (bits >> 40 & 1) order = (order & 0x55555555u) << 1 | (order >> 1 & 0x55555555u);
-    return {owen_scramble(index, low(bits)), owen_scramble(order, high(bits))};
+    if (bits >> 40 & 1) {
+        reversed_order = (reversed_order & 0x55555555u) << 1 | (reversed_order >> 1 & 0x55555555u);
+    }
+    return {reverse_bits(laine_karras(reversed_index, low(bits))),
+            laine_karras(reversed_order, high(bits))};
+}
+
+// The components before the scrambling, in reversed digits, which is what it wants. C(i+k, i) is
+// odd when i and k share no bit (Kummer 1852): digit i of S p sums the digits k of p contained in
+// the complement of i, and the complement of i is the number of that digit's bit. Reversed, it sums
+// the bits of the reversed p over supersets. P p sums p over supersets: the reversed p over
+// subsets.
+std::uint32_t reversed_x(const Ordered& o) {
+    return o.sample ^ sum_over_supersets(o.reversed_pixel);
+}
+std::uint32_t reversed_y(const Ordered& o) {
+    return sum_over_supersets(o.sample ^ sum_over_subsets(o.reversed_pixel));
+}
+float scrambled(std::uint32_t reversed, std::uint32_t seed) {
+    return digits_to_unit(reverse_bits(laine_karras(reversed, seed)));
 }
 
 }  // namespace
@@ -81,20 +98,16 @@ PixelSampler PixelSampler::part(std::uint32_t count, std::uint32_t i) const {
 }
 
 float PixelSampler::stratified_one(std::uint32_t dimension) const {
-    const Ordered o = shuffle(seed_bits(picture_, 2 * dimension), index_, order_);
-    const std::uint64_t scramble = seed_bits(picture_, 2 * dimension + 1);
-    const std::uint32_t x = reverse_bits(o.sample) ^ symmetric_pascal(o.pixel);
-    return digits_to_unit(owen_scramble(x, low(scramble)));
+    const Ordered o =
+        shuffle(seed_bits(picture_, 2 * dimension), reverse_bits(index_), reverse_bits(order_));
+    return scrambled(reversed_x(o), low(seed_bits(picture_, 2 * dimension + 1)));
 }
 
 Vec2f PixelSampler::stratified_two(std::uint32_t dimension) const {
-    const Ordered o = shuffle(seed_bits(picture_, 2 * dimension), index_, order_);
+    const Ordered o =
+        shuffle(seed_bits(picture_, 2 * dimension), reverse_bits(index_), reverse_bits(order_));
     const std::uint64_t scramble = seed_bits(picture_, 2 * dimension + 1);
-    const std::uint32_t x = reverse_bits(o.sample) ^ symmetric_pascal(o.pixel);
-    const std::uint32_t y =
-        sobol_second(o.sample) ^ symmetric_pascal(reverse_bits(sobol_second(o.pixel)));
-    return {digits_to_unit(owen_scramble(x, low(scramble))),
-            digits_to_unit(owen_scramble(y, high(scramble)))};
+    return {scrambled(reversed_x(o), low(scramble)), scrambled(reversed_y(o), high(scramble))};
 }
 
 }  // namespace gischt

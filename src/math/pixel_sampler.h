@@ -29,7 +29,7 @@ class HashStream {
 // index, dimension), whatever other samples are taken. A dimension is one decision of the method,
 // numbered by it; one(d) is the first component of two(d), so use each number once.
 //
-// Dimensions below stratified_dimensions (about 25 ns each) are Owen-scrambled Sobol pairs that are
+// Dimensions below stratified_dimensions (about 30 ns each) are Owen-scrambled Sobol pairs that are
 // well distributed in two ways: the first 2^j samples of a pixel stratify the square, and so do,
 // for each component, the first 2^j samples of an aligned block of 2^m pixels together, for every
 // j and m. So neighbours err in opposite directions: the error of few samples is blue noise on the

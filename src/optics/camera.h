@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "math/box.h"
 #include "math/keyframes.h"
@@ -22,45 +23,80 @@ struct CameraParams {
     Keyed<double> fov_degrees{40};           // full vertical field, perspective
     Keyed<double> height{2};                 // m, full height of the picture, orthographic
     Keyed<double> roll_degrees{0};           // positive: the picture's content turns clockwise
+
+    // The aperture: a radius or an f-number; both 0: a pinhole, everything is sharp.
+    Keyed<double> lens_radius{0};                 // m
+    Keyed<double> f_number{0};                    // focal length / diameter
+    double sensor_height = 0.024;                 // m, makes a focal length of the field of view
+    std::optional<Keyed<double>> focus_distance;  // m along the view axis; unset: the target's
+    std::optional<Keyed<Vec3d>> focus_target;     // a point that is sharp, in its place
+    int blades = 0;                               // corners of the aperture; below 3: a disc
+    double blade_rotation_degrees = 0;
 };
 
 const Table<CameraParams>& camera_table();
 
-// A camera at one moment for a picture of width x height square pixels. Pixel (x, y) has its centre
-// at (x + 1/2, y + 1/2), x to the right, y down.
+// A camera for a picture of width x height square pixels, at one moment and around it while the
+// shutter is open. Pixel (x, y) has its centre at (x + 1/2, y + 1/2), x to the right, y down.
+//
+// With an aperture it is a thin lens whose image of the plane at the focus distance is sharp and
+// fills the picture as that of the pinhole in its centre: focussing does not change the field of
+// view. A point at depth z is seen as a disc of the diameter 2 R |z - s| / z / pixel_size(s) pixels
+// for the focus distance s and the lens radius R.
 class Camera {
   public:
     Camera() = default;
     // `scene_up` is taken when the parameters name none. An up vector parallel to the view is
-    // replaced by any other. Throws Error{Usage} when target and position coincide.
+    // replaced by any other. `shutter` in seconds, centred on time: parameters with keyframes move
+    // during it. Throws Error{Usage} when target and position coincide, when nothing can be in
+    // focus, and when the aperture or the focus is given twice.
     Camera(const CameraParams& params, double time, int width, int height,
-           const Vec3d& scene_up = {0, 0, 1});
+           const Vec3d& scene_up = {0, 0, 1}, double shutter = 0);
 
     // The ray through a point of the picture, in pixels; its direction has unit length, t_min = 0.
     // `lens` in [0,1)^2 chooses the point of the aperture, `time` in [0,1) the moment between the
     // opening and the closing of the shutter.
     Ray ray(double x, double y, Vec2f lens = {0.5f, 0.5f}, double time = 0.5) const;
     // Whether `lens` makes a difference.
-    bool has_aperture() const { return false; }
+    bool has_aperture() const { return middle_.lens_radius > 0; }
     // Distance along the view axis (the Z of an image) of the point ray.at(t), metres.
-    double depth(const Ray& ray, double t) const { return t * dot(ray.direction, forward_); }
-    // Where a point appears, in pixels; nothing behind a perspective camera.
+    // From the camera at the middle of the shutter's time.
+    double depth(const Ray& ray, double t) const {
+        return dot(ray.at(t) - middle_.position, middle_.forward);
+    }
+    // Where a point appears, in pixels, at the middle of the shutter's time and through the middle
+    // of the lens; nothing behind a perspective camera.
     std::optional<Vec2d> project(const Vec3d& point) const;
     // Edge of a pixel in metres at a depth along the view axis, at the picture's centre.
     double pixel_size(double depth) const;
 
     Projection projection() const { return projection_; }
-    const Vec3d& position() const { return position_; }
-    const Vec3d& forward() const { return forward_; }  // unit vectors, mutually orthogonal
-    const Vec3d& right() const { return right_; }
-    const Vec3d& up() const { return up_; }
+    // At the middle of the shutter's time.
+    const Vec3d& position() const { return middle_.position; }
+    const Vec3d& forward() const { return middle_.forward; }  // unit, mutually orthogonal
+    const Vec3d& right() const { return middle_.right; }
+    const Vec3d& up() const { return middle_.up; }
+    double lens_radius() const { return middle_.lens_radius; }        // m
+    double focus_distance() const { return middle_.focus_distance; }  // m along the view axis
     int width() const { return width_; }
     int height() const { return height_; }
 
   private:
+    // What the parameters say of one moment.
+    struct Pose {
+        Vec3d position{0, -5, 1}, right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};
+        double scale = 0.36397023426620234;  // half the height of the picture at depth 1 (or in m)
+        double lens_radius = 0, focus_distance = 5;
+    };
+    static Pose pose_at(const CameraParams& params, double time, const Vec3d& scene_up);
+    Pose pose(double time) const;
+
     Projection projection_ = Projection::Perspective;
-    Vec3d position_{0, -5, 1}, right_{1, 0, 0}, up_{0, 0, 1}, forward_{0, 1, 0};
-    double scale_ = 0.36397023426620234;  // half the height of the picture at depth 1 (or in m)
+    Pose middle_;
+    // At equidistant moments from the opening to the closing of the shutter; empty at rest.
+    std::vector<Pose> moving_;
+    int blades_ = 0;
+    double blade_rotation_ = 0;  // radians
     int width_ = 1, height_ = 1;
 };
 

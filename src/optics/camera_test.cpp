@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "optics/aperture.h"
 #include "optics/orientation.h"
 
 namespace gischt {
@@ -134,6 +135,127 @@ TEST(Orientation, AzimuthIsMeasuredFromTheFront) {
     EXPECT_NEAR(length(horizon_direction(90, 0, {0, 1, 0}) - Vec3d{1, 0, 0}), 0, 1e-15);
     EXPECT_NEAR(length(horizon_direction(12, 90, {0, 1, 0}) - Vec3d{0, 1, 0}), 0, 1e-15);
     EXPECT_NEAR(horizon_direction(12, 30, {0, 0, -1}).z, -0.5, 1e-15);
+}
+
+// Where a point appears through one point of the lens: a ray's place in the point's plane is linear
+// in the place of the picture.
+Vec2d seen_through(const Camera& camera, const Vec3d& point, Vec2f lens) {
+    const double depth = dot(point - camera.position(), camera.forward());
+    auto in_plane = [&](double x, double y) {
+        const Ray ray = camera.ray(x, y, lens);
+        const double t = (depth - camera.depth(ray, 0)) / dot(ray.direction, camera.forward());
+        const Vec3d miss = ray.at(t) - point;
+        return Vec2d{dot(miss, camera.right()), dot(miss, camera.up())};
+    };
+    const Vec2d miss = in_plane(0, 0), px = in_plane(1, 0), py = in_plane(0, 1);
+    return {-miss.x / (px.x - miss.x), -miss.y / (py.y - miss.y)};
+}
+
+// The circle of confusion of a thin lens. Focal length f = 35 mm, f/2, focus at s: the image of a
+// point at z is a disc of the diameter (f/2) |z - s| / z * v / s on the sensor, v = f being the
+// distance from lens to sensor (the field of view is kept while focussing).
+TEST(Camera, BlursByTheCircleOfConfusion) {
+    const double sensor = 0.024, focal = 0.035, s = 3;
+    CameraParams p = looking_north();
+    p.fov_degrees = 2 * std::atan(0.5 * sensor / focal) * 180 / pi;
+    p.f_number = 2.0;
+    p.focus_distance = Keyed<double>(s);
+    const Camera camera(p, 0, 1920, 1080);
+    EXPECT_NEAR(camera.lens_radius(), focal / 4, 1e-12);
+    for (const double z : {0.7, 2.0, 3.0, 5.0, 400.0}) {
+        const Vec3d point = Vec3d(1, -4, 2) + Vec3d(0.1, 1, 0.2) * z;
+        const auto middle = camera.project(point);
+        double largest = 0, mean = 0;
+        const int n = 64;
+        for (int i = 0; i < n * n; ++i) {
+            const Vec2f u{(static_cast<float>(i % n) + 0.5f) / n,
+                          (static_cast<float>(i / n) + 0.5f) / n};
+            const Vec2d at = seen_through(camera, point, u);
+            const double r = std::hypot(at.x - middle->x, at.y - middle->y);
+            largest = std::max(largest, r);
+            mean += r * r / (n * n);
+        }
+        const double diameter = focal / 2 * std::abs(z - s) / z * focal / s / sensor * 1080;
+        EXPECT_LE(largest, 0.5 * diameter + 1e-7) << z;
+        EXPECT_GE(largest, 0.5 * diameter * (1 - 1.5 / n)) << z;
+        // Uniform over the disc: the mean square of the distance is half of the largest.
+        EXPECT_NEAR(mean, 0.125 * diameter * diameter, 1e-3 * diameter * diameter + 1e-12) << z;
+    }
+}
+
+TEST(Camera, ApertureWithBladesIsAPolygon) {
+    for (const int blades : {3, 6}) {
+        // Uniform: the second moment of a regular polygon with corners at 1 is (2 + cos w) / 6 of
+        // the square of its radius, w the angle of a side.
+        double square = 0, x = 0, y = 0;
+        const int n = 512;
+        for (int i = 0; i < n * n; ++i) {
+            const Vec2d at = aperture_point(
+                {(static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n},
+                blades, 0.3);
+            // Inside of every side.
+            for (int k = 0; k < blades; ++k) {
+                const double normal = 0.3 + (k + 0.5) * 2 * pi / blades;
+                EXPECT_LE(at.x * std::cos(normal) + at.y * std::sin(normal),
+                          std::cos(pi / blades) + 1e-9);
+            }
+            square += (at.x * at.x + at.y * at.y) / (n * n);
+            x += at.x / (n * n);
+            y += at.y / (n * n);
+        }
+        EXPECT_NEAR(square, (2 + std::cos(2 * pi / blades)) / 6, 1e-3);
+        EXPECT_NEAR(x, 0, 1e-3);
+        EXPECT_NEAR(y, 0, 1e-3);
+    }
+}
+
+TEST(Camera, FocusTargetIsSharpAndFocusIsGivenOnce) {
+    for (const Projection kind : {Projection::Perspective, Projection::Orthographic}) {
+        CameraParams p = looking_north();
+        p.projection = kind;
+        p.lens_radius = 0.2;
+        p.focus_target = Keyed<Vec3d>(Vec3d{1.3, -1, 2.2});
+        const Camera camera(p, 0, 100, 100);
+        EXPECT_NEAR(camera.focus_distance(), 3, 1e-12);
+        const auto at = camera.project({1.3, -1, 2.2});
+        for (const Vec2f u : {Vec2f{0.1f, 0.9f}, Vec2f{0.99f, 0.5f}}) {
+            const Ray ray = camera.ray(at->x, at->y, u);
+            const double t = dot(Vec3d(1.3, -1, 2.2) - ray.origin, ray.direction);
+            EXPECT_NEAR(length(ray.at(t) - Vec3d(1.3, -1, 2.2)), 0, 1e-12);
+            EXPECT_GT(length(ray.origin - camera.ray(at->x, at->y).origin), 0.1);
+        }
+        CameraParams twice = p;
+        twice.focus_distance = Keyed<double>(3.0);
+        EXPECT_THROW(Camera(twice, 0, 10, 10), Error);
+        twice = p;
+        twice.f_number = 2.0;
+        EXPECT_THROW(Camera(twice, 0, 10, 10), Error);
+        p.focus_target = Keyed<Vec3d>(Vec3d{1, -5, 2});
+        EXPECT_THROW(Camera(p, 0, 10, 10), Error);
+    }
+}
+
+// A pan and a dolly while the shutter is open: at each moment the rays are those of a camera that
+// was made for it.
+TEST(Camera, MovesWhileTheShutterIsOpen) {
+    CameraParams p = looking_north();
+    p.position = Keyed<Vec3d>({0, 1}, {Vec3d{1, -4, 2}, Vec3d{3, -5, 2}});
+    p.target = Keyed<Vec3d>({0, 1}, {Vec3d{1, 0, 2}, Vec3d{0, 0, 3}});
+    p.fov_degrees = Keyed<double>({0, 1}, {50, 40});
+    const Camera moving(p, 0.5, 320, 180, {0, 0, 1}, 0.5);
+    for (const double share : {0.0, 0.2, 0.5, 0.77, 1.0}) {
+        const Camera still(p, 0.25 + 0.5 * share, 320, 180);
+        const Ray a = moving.ray(17, 160, {}, share), b = still.ray(17, 160);
+        EXPECT_NEAR(length(a.origin - b.origin), 0, 1e-9);
+        EXPECT_NEAR(length(a.direction - b.direction), 0, 1e-4);
+        EXPECT_NEAR(length(a.direction), 1, 1e-14);
+    }
+    EXPECT_NEAR(
+        length(moving.ray(17, 160).direction - Camera(p, 0.5, 320, 180).ray(17, 160).direction), 0,
+        1e-9);
+    // Without a shutter it stands still.
+    const Camera still(p, 0.5, 320, 180);
+    EXPECT_EQ(length(still.ray(17, 160, {}, 0.1).direction - still.ray(17, 160).direction), 0);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ struct AovLayout {
 // What a method can fill in, beside variance and samples.
 struct AovSupport {
     std::string_view method;
-    std::span<const Aov> aovs;
+    std::span<const Aov> aovs{};
     bool light_groups = false;
 };
 

@@ -30,7 +30,7 @@ TEST(AovLayout, PutsTheLayersIntoTheOrderOfTheTable) {
     EXPECT_TRUE(layout.samples);
     EXPECT_FALSE(layout.variance);
     std::vector<float> extra(5);
-    AovLayout::add(extra, layout.motion, Vec2f(1, 2));
+    AovLayout::add(extra, layout.motion, Vec2f{1, 2});
     AovLayout::add(extra, layout.normal, Vec3f(9));
     EXPECT_EQ(extra, (std::vector<float>{0, 0, 0, 1, 2}));
 }

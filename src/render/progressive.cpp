@@ -110,8 +110,9 @@ class Progression {
             (state_.ranges.size() == 1 && state_.ranges[0].begin == settings_.first_sample);
         const std::string holds = fmt::format("it holds the samples {}", to_text(state_.ranges));
         if (!fits) fail("its size, filter or channels are others");
+        if (goals().empty() && state_.is_complete()) goals().assign(tiles_.count(), most_samples());
         if (!is_one_run || goals().size() != tiles_.count())
-            fail(holds + " of a merge or of a part");
+            fail(holds + ", with gaps or not from the first one on");
         if (most_samples() > settings_.samples_per_pixel) fail(holds + ", more than asked for");
         for (auto& goal : goals()) goal = std::clamp(goal, 1, settings_.samples_per_pixel);
     }
@@ -231,7 +232,9 @@ class Progression {
         at.y = y;
         at.index = static_cast<std::uint32_t>(settings_.first_sample + sample);
         at.numbers = PixelSampler(settings_.seed, view_.frame, x, y, at.index);
-        const FilterSample place = film().sample_filter(at.numbers.two(SampleDimension::Film));
+        // The same places in every frame: the edges of what stands still do not flicker.
+        const PixelSampler places(settings_.seed, 0, x, y, at.index);
+        const FilterSample place = film().sample_filter(places.two(SampleDimension::Film));
         at.film_x = x + 0.5 + static_cast<double>(place.offset.x);
         at.film_y = y + 0.5 + static_cast<double>(place.offset.y);
         if (view_.camera.has_aperture()) at.lens = at.numbers.two(SampleDimension::Lens);

@@ -15,8 +15,8 @@ struct LoadedScene {
     std::string hash;          // of the whole scene, defaults spelled out
     std::string picture_hash;  // of all but what a finished film can still be given another:
                                // samples, exposure, tone, the range of frames
-    std::string motion_hash;  // of what the simulation depends on: a cache belongs to it
-    std::string toml;         // the scene with overrides, as a file
+    std::string motion_hash;   // of what the simulation depends on: a cache belongs to it
+    std::string toml;          // the scene with overrides, as a file
 };
 
 // Reads a scene file, or the built-in scene of that name where no such file is; applies a preset

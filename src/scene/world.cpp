@@ -225,9 +225,9 @@ View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int fr
     }
     view.lights = lights_.at(view.time);
     view.surfaces = SurfaceSet(scene_.solids, view.time, scene_.up_vector());
-    view.camera =
-        Camera(camera(view), view.time, scene_.film.width, scene_.film.height, scene_.up_vector());
     view.shutter = scene_.film.shutter / scene_.fps;
+    view.camera = Camera(camera(view), view.time, scene_.film.width, scene_.film.height,
+                         scene_.up_vector(), view.shutter);
     return view;
 }
 

@@ -39,8 +39,8 @@ const Table<MarchParams>& march_table() {
             .add("sky_directions", &MarchParams::sky_directions,
                  {.help = "Directions from which that grid takes the sky", .min = 24, .max = 4096})
             .add("sky_samples", &MarchParams::sky_samples,
-                 {.help = "Directions of the sky per sample at a point of a surface; without "
-                          "light_cache at every step",
+                 {.help = "Directions of the sky per sample, in each of two sets, at a point of a "
+                          "surface; without light_cache at every step",
                   .min = 1,
                   .max = 1024});
     return table;

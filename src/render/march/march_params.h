@@ -18,7 +18,7 @@ struct MarchParams {
     int sky_nodes = 300'000;    // of a grid of sky light, at least half a voxel apart
     int sky_directions = 128;   // from which the grid takes the sky
 
-    int sky_samples = 4;  // directions per surface point; without cache per step too
+    int sky_samples = 4;  // directions per set at a surface point; without cache per step too
 };
 
 const Table<MarchParams>& march_table();

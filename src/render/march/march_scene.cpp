@@ -84,8 +84,14 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
         is_grey = is_grey && m.extinction.x == m.extinction.y && m.extinction.x == m.extinction.z;
         media.push_back(std::move(m));
     }
-    if (!params.light_cache) return;
     const PhaseTimer timer(job, "light");
+    if (!view.surfaces.is_empty()) {
+        for (const Light* light : broad) {
+            aimed_sky.emplace_back(*light);
+            open_sky.emplace_back(*light);
+        }
+    }
+    if (!params.light_cache) return;
     for (MarchMedium& m : media) make_depth_grids(m, job);
     for (std::size_t i = 0; i < media.size() && !broad.empty(); ++i) {
         if (max_component(media[i].scattering) == 0) continue;

@@ -10,6 +10,8 @@
 #include "optics/medium_depth.h"
 #include "optics/sun_depth.h"
 #include "optics/view.h"
+#include "render/march/aimed_sky.h"
+#include "render/march/irradiance_map.h"
 #include "render/march/march_params.h"
 #include "render/march/octave.h"
 #include "render/march/point_depth.h"
@@ -50,7 +52,10 @@ struct MarchScene {
     std::vector<MarchMedium> media;
     std::vector<NarrowLight> narrow;
     std::vector<const Light*> broad;  // from all of the sky
-    bool is_grey = false;             // all channels of all media have the same extinction
+    // Of these, for surfaces: what draws directions, and the irradiance where nothing blocks.
+    std::vector<AimedSky> aimed_sky;
+    std::vector<IrradianceMap> open_sky;
+    bool is_grey = false;  // all channels of all media have the same extinction
 
     // Optical depth from a point in medium `inside` towards a narrow light, which `sample` is of,
     // through all media; from the grids where there are some.

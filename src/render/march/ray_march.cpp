@@ -6,7 +6,6 @@
 
 #include "image/color.h"
 #include "math/fast_math.h"
-#include "optics/environment.h"
 #include "render/progressive.h"
 
 namespace gischt {
@@ -17,6 +16,7 @@ enum : std::uint32_t {
     DimensionJitter = SampleDimension::Free,
     DimensionSun,
     DimensionSky,
+    DimensionSkyToo,
     DimensionStep = 16
 };
 
@@ -58,7 +58,7 @@ float sum_of_octaves(const MarchMedium& m, std::span<const float> weights, float
 
 }  // namespace
 
-RayMarcher::RayMarcher(const MarchScene& scene) : scene_(scene) {
+RayMarcher::RayMarcher(const MarchScene& scene) : scene_(scene), sky_(scene.aimed_sky) {
     for (const MarchMedium& m : scene.media) {
         phase_offset_.push_back(phase_stride_);
         phase_stride_ += m.octaves.size();
@@ -268,7 +268,7 @@ Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& po
     for (const Light* light : scene_.broad) {
         for (int i = 0; i < 2 * n; ++i) {
             const bool from_light = i % 2 == 1;
-            const Vec2f u = shifted(first, i);
+            const Vec2f u = shifted(first, i / 2);
             Vec3d towards;
             float light_pdf, phase_pdf;
             if (from_light) {
@@ -321,41 +321,44 @@ Vec3f RayMarcher::shade(const SurfaceHit& hit, const PixelSampler& sampler) {
         irradiance += static_cast<float>(cosine) * s.weight *
                       through_media(shadow, scene_.params.shadow_step);
     }
-    for (const Light* light : scene_.broad) irradiance += sky_irradiance(*light, hit, sampler);
+    for (std::size_t b = 0; b < scene_.broad.size(); ++b) {
+        irradiance += sky_irradiance(b, hit, sampler);
+    }
     return hit.emission + static_cast<float>(1 / pi) * hit.albedo * irradiance;
 }
 
-// Directions in proportion to the cosine and, where the sky is not the same everywhere, drawn from
-// the light, weighed by the balance heuristic.
-Vec3f RayMarcher::sky_irradiance(const Light& light, const SurfaceHit& hit,
+// Directions in proportion to radiance times cosine. The light of an open sky is known: it takes
+// the place of what the same directions say of it (a control variate), as far as it arrives at all,
+// so that there is no noise where all or nothing of the sky is seen. How much arrives is estimated
+// by two sets of directions; each takes the other's estimate, so that the sum stays unbiased.
+Vec3f RayMarcher::sky_irradiance(std::size_t broad, const SurfaceHit& hit,
                                  const PixelSampler& sampler) {
-    const bool is_even = dynamic_cast<const ConstantLight*>(&light) != nullptr;
-    const int n = scene_.params.sky_samples;
-    Vec3d tangent, bitangent;
-    orthonormal_frame(hit.normal, tangent, bitangent);
-    const Vec2f first = sampler.two(DimensionSky);
+    sky_[broad].aim(hit.normal);
+    const SkyEstimate sets[2] = {estimate_sky(broad, hit, sampler.two(DimensionSky)),
+                                 estimate_sky(broad, hit, sampler.two(DimensionSkyToo))};
+    const Vec3f open = scene_.open_sky[broad](hit.normal);
     Vec3f sum;
-    for (int i = 0; i < 2 * n; ++i) {
-        const bool from_light = !is_even && i % 2 == 1;
-        const Vec2f u = shifted(first, i);
-        Vec3d towards;
-        if (from_light) {
-            towards = light.sample(hit.point, u).direction;
-        } else {
-            const double r = std::sqrt(static_cast<double>(u.x)),
-                         turn = 2 * pi * static_cast<double>(u.y);
-            towards = r * std::cos(turn) * tangent + r * std::sin(turn) * bitangent +
-                      std::sqrt(1 - r * r) * hit.normal;
-        }
-        const double cosine = dot(towards, hit.normal);
-        const Vec3f radiance = light.radiance(towards);
-        if (cosine <= 0 || max_component(radiance) <= 0) continue;
-        const Ray shadow = leaving_ray(hit, towards);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const SkyEstimate &one = sets[i], &other = sets[1 - i];
+        const float all = luminance(other.open);
+        const float share = all > 0 ? luminance(other.arriving) / all : 0.0f;
+        sum += 0.5f * (one.arriving + share * (open - one.open));
+    }
+    return sum;
+}
+
+RayMarcher::SkyEstimate RayMarcher::estimate_sky(std::size_t broad, const SurfaceHit& hit,
+                                                 Vec2f first) {
+    const int n = scene_.params.sky_samples;
+    SkyEstimate sum;
+    for (int i = 0; i < n; ++i) {
+        const AimedSky::Direction d = sky_[broad](shifted(first, i));
+        if (max_component(d.weight) <= 0) continue;
+        sum.open += d.weight / static_cast<float>(n);
+        const Ray shadow = leaving_ray(hit, d.towards);
         if (scene_.view.surfaces.is_blocked(shadow)) continue;
-        const float cosine_pdf = static_cast<float>(cosine / pi);
-        const float pdf = is_even ? 2 * cosine_pdf : light.pdf(hit.point, towards) + cosine_pdf;
-        sum += radiance * through_media(shadow, 2 * scene_.params.shadow_step) *
-               (static_cast<float>(cosine) / (static_cast<float>(n) * pdf));
+        sum.arriving +=
+            d.weight * through_media(shadow, 2 * scene_.params.shadow_step) / static_cast<float>(n);
     }
     return sum;
 }

@@ -57,7 +57,12 @@ class RayMarcher {
     Vec3f from_broad(std::size_t medium, const Ray& ray, const Vec3d& point,
                      const PixelSampler& sampler);
     Vec3f shade(const SurfaceHit& hit, const PixelSampler& sampler);
-    Vec3f sky_irradiance(const Light& light, const SurfaceHit& hit, const PixelSampler& sampler);
+    // Irradiance of a sky at a point of a surface: what arrives of it, and if nothing blocked it.
+    struct SkyEstimate {
+        Vec3f arriving, open;
+    };
+    Vec3f sky_irradiance(std::size_t broad, const SurfaceHit& hit, const PixelSampler& sampler);
+    SkyEstimate estimate_sky(std::size_t broad, const SurfaceHit& hit, Vec2f first);
     Vec3f through_media(const Ray& ray, double step);
 
     const MarchScene& scene_;
@@ -67,6 +72,7 @@ class RayMarcher {
     std::size_t phase_stride_ = 0;           // from light to light
     std::vector<LightSample> sun_;           // of this ray, by narrow light: a point of its disc
     std::vector<float> local_weight_;        // the same for one light at a finite place
+    std::vector<AimedSky> sky_;              // by broad light; empty without surfaces
     std::uint32_t step_ = 0;                 // steps done on this ray
     MarchedRay result_;
 };

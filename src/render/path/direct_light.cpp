@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that reaches a scattering point straight from the lights, and from suns through one more
-// scattering.
+// Light that reaches a scattering point straight from the lights, from suns also through one more
+// scattering, and what a path meets by itself.
 #include <algorithm>
+#include <utility>
 
 #include "image/color.h"
-#include "math/fast_math.h"
 #include "render/path/path_tracer.h"
 
 namespace gischt {
 
-Vec3f PathTracer::transmittance(const Ray& ray, RandomStream& random) {
-    ++rays_;
-    const auto estimator = scene_.params.shadow == TransmittanceEstimator::Cached
-                               ? TransmittanceEstimator::ResidualRatio
-                               : scene_.params.shadow;
-    return tracker_.transmittance(ray, estimator, random);
+Vec3f Scatterer::value(const Vec3d& direction) const {
+    if (medium) return Vec3f(gischt::value(medium->phase(), dot(forward, Vec3f(direction))));
+    return bsdf->value(-Vec3d(forward), direction);
+}
+
+float Scatterer::pdf(const Vec3d& direction) const {
+    if (medium) return gischt::value(medium->phase(), dot(forward, Vec3f(direction)));
+    return bsdf->pdf(-Vec3d(forward), direction);
+}
+
+Ray Scatterer::leave(const Vec3d& direction, double distance) const {
+    Ray ray = hit ? leaving_ray(*hit, direction) : Ray{point, direction};
+    ray.t_max = distance;
+    return ray;
 }
 
 // Scattering so even that every direction is as good as another needs no halo.
@@ -24,106 +32,195 @@ bool PathTracer::has_halo(const Medium& medium) const {
            std::abs(mean_cosine(medium.phase())) > least;
 }
 
-Vec3f PathTracer::direct_light(const Vertex& v, RandomStream& random) {
-    Vec3f sum;
-    for (const SunSource& sun : scene_.suns) sum += from_sun(sun, v, random);
-    if (!scene_.local.empty()) sum += from_local(v, random);
-    if (!scene_.broad.empty()) sum += from_broad(v, random);
-    return sum;
+// Transmittance of a shadow ray, 0 where a surface blocks it.
+Vec3f PathTracer::shadow(const Scatterer& at, const Ray& ray, RandomStream& random) {
+    if (is_blocked(ray)) return {};
+    ++rays_;
+    const TransmittanceEstimator estimator = shadow_estimator(scene_.params);
+    if (!inside_) return tracker_.transmittance(ray, estimator, random);
+    // From boundary to boundary, each stretch in its own medium.
+    const std::optional<InteriorStack> inside = inside_;
+    if (at.hit && dot(ray.direction, at.hit->normal) < 0) cross(*at.hit);
+    Ray rest = ray;
+    Vec3f product(1);
+    for (int i = 0; i < 256; ++i) {
+        const double end = rest.t_max;
+        const auto hit = scene_.view.surfaces.intersect(rest, moment_);
+        if (hit) rest.t_max = hit->t;
+        product = product * tracker_.transmittance(rest, estimator, random);
+        if (!hit) break;
+        cross(*hit);
+        rest = leaving_ray(*hit, ray.direction);
+        rest.t_max = end - hit->t;
+    }
+    inside_ = inside;
+    take_media();
+    return product;
 }
 
-Vec3f PathTracer::from_sun(const SunSource& sun, const Vertex& v, RandomStream& random) {
-    const LightSample s = sun.light->sample(v.point, random.two());
-    if (max_component(s.weight) <= 0 || is_blocked({v.point, s.direction})) return {};
-    ++rays_;
-    const PhaseFunction& phase = scene_.media[v.medium]->phase();
-    float weight = value(phase, dot(v.forward, Vec3f(s.direction)));
+void PathTracer::direct_light(const Scatterer& at, const Leg& leg, RandomStream& random) {
+    for (const SunSource& sun : scene_.suns) from_sun(sun, at, leg, 1, random);
+    if (!scene_.local.empty()) from_local(at, leg, random);
+    if (!scene_.broad.empty()) from_broad(at, leg, random);
+}
+
+void PathTracer::from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
+                          RandomStream& random) {
+    const LightSample s = sun.light->sample(at.point, random.two());
+    Vec3f value = factor * at.value(s.direction);
+    if (max_component(s.weight) <= 0 || max_component(value) <= 0) return;
     // The way here could also have been drawn around the sun (from_halo): balance heuristic.
-    if (v.halo_of) {
-        const float other = value(v.halo_of->phase(), dot(v.forward, Vec3f(sun.direction)));
-        weight *= v.phase_pdf / (v.phase_pdf + other);
+    if (leg.halo_of) {
+        const float other =
+            gischt::value(leg.halo_of->phase(), dot(at.forward, Vec3f(sun.direction)));
+        value *= leg.pdf / (leg.pdf + other);
     }
-    return v.weight.value() * weight * s.weight *
-           sun_transmittance(sun, v.point, s.direction, scene_.params, tracker_, random);
+    const Ray ray = at.leave(s.direction, s.distance);
+    Vec3f light;
+    if (sun.is_cached() && !inside_) {
+        if (is_blocked(ray)) return;
+        ++rays_;
+        light = sun_transmittance(sun, ray.origin, s.direction, scene_.params, tracker_, random);
+    } else {
+        light = shadow(at, ray, random);
+    }
+    deposit(leg.weight.value() * value * s.weight * light, leg.events, sun.index);
 }
 
 // Suns seen through one more scattering: the direction of the flight before it is drawn around the
 // sun by the phase function, as that scattering will favour it. Together with from_sun() at the
-// next vertex no contribution exceeds what either phase function alone would give, so a forward
-// peak does not sparkle.
-Vec3f PathTracer::from_halo(const Vertex& v, RandomStream random) {
-    const Medium& medium = *scene_.media[v.medium];
-    if (!has_halo(medium)) return {};
+// next vertex no contribution exceeds what the lesser of the two phase functions gives, so that a
+// forward peak does not sparkle.
+void PathTracer::from_halo(const Scatterer& at, const Leg& leg, RandomStream random) {
+    const Medium& medium = *at.medium;
+    if (!has_halo(medium)) return;
     const auto suns = static_cast<float>(scene_.suns.size());
     const auto pick = static_cast<std::size_t>(random.next() * suns);
     const SunSource& sun = scene_.suns[std::min(pick, scene_.suns.size() - 1)];
     const PhaseSample flight = sample(medium.phase(), Vec3f(sun.direction), random.two());
-    const float pdf = value(medium.phase(), dot(v.forward, flight.direction));
-    const float weight = suns * pdf / (pdf + flight.pdf);
-    Ray ray{v.point, Vec3d(flight.direction)};
-    if (const auto hit = scene_.view.surfaces.intersect(ray)) ray.t_max = hit->t;
-    ++rays_;
-    Vertex next;
-    next.weight = v.weight;
-    Collision end;
-    if (!tracker_.fly(ray, hero_, next.weight, random, end)) return {};
-    const CrossSections& cross = scene_.media[end.medium]->cross_sections();
-    next.weight.weight = next.weight.weight * cross.scattering / cross.extinction();
-    next.point = ray.at(end.t);
-    next.forward = flight.direction;
-    next.medium = end.medium;
-    return weight * from_sun(sun, next, random);
+    const float pdf = value(medium.phase(), dot(at.forward, flight.direction));
+    const float factor = suns * pdf / (pdf + flight.pdf);
+    // Only a collision on the way to the next surface or boundary counts.
+    Leg next = leg;
+    next.ray = {at.point, Vec3d(flight.direction)};
+    next.halo_of = nullptr;
+    const std::optional<InteriorStack> inside = inside_;
+    Collision collision;
+    std::optional<SurfaceHit> hit;
+    const bool had_glow = std::exchange(tracker_.is_emissive, false);
+    if (fly(next, random, collision, hit) == End::Collision) {
+        const Medium* other = tracker_.media[collision.medium];
+        const CrossSections& cross = other->cross_sections();
+        next.weight.weight =
+            next.weight.weight * cross.scattering / max(cross.extinction(), Vec3f(1e-30f));
+        ++next.events;
+        from_sun(sun, {next.ray.at(collision.t), flight.direction, other, nullptr, nullptr}, next,
+                 factor, random);
+    }
+    tracker_.is_emissive = had_glow;
+    if (inside) {
+        inside_ = inside;
+        take_media();
+    }
 }
 
 // One light at a finite place, drawn by how brightly it would shine here.
-Vec3f PathTracer::from_local(const Vertex& v, RandomStream& random) {
+void PathTracer::from_local(const Scatterer& at, const Leg& leg, RandomStream& random) {
     float total = 0;
-    for (const Light* l : scene_.local) total += luminance(l->mean_radiance(v.point));
-    if (!(total > 0)) return {};
+    for (const auto& d : scene_.local) total += luminance(d.light->mean_radiance(at.point));
+    if (!(total > 0)) return;
     float left = random.next() * total, share = 0;
-    const Light* drawn = nullptr;
-    for (const Light* l : scene_.local) {
-        share = luminance(l->mean_radiance(v.point));
-        if (share > 0) drawn = l;
-        left -= share;
+    PathScene::Drawn drawn;
+    for (const auto& d : scene_.local) {
+        const float here = luminance(d.light->mean_radiance(at.point));
+        if (here > 0) {
+            drawn = d;
+            share = here / total;
+        }
+        left -= here;
         if (left < 0) break;
     }
-    const LightSample s = drawn->sample(v.point, random.two());
-    if (max_component(s.weight) <= 0) return {};
-    const Ray shadow{v.point, s.direction, 0, s.distance};
-    if (is_blocked(shadow)) return {};
-    const float phase = value(scene_.media[v.medium]->phase(), dot(v.forward, Vec3f(s.direction)));
-    return v.weight.value() * (phase * total / luminance(drawn->mean_radiance(v.point))) *
-           s.weight * transmittance(shadow, random);
+    const LightSample s = drawn.light->sample(at.point, random.two());
+    if (max_component(s.weight) <= 0) return;
+    Vec3f value = at.value(s.direction) * (1 / share);
+    if (max_component(value) <= 0) return;
+    // A light with a size may also be met by chance.
+    if (s.pdf > 0) value *= share * s.pdf / (share * s.pdf + at.pdf(s.direction));
+    deposit(leg.weight.value() * value * s.weight *
+                shadow(at, at.leave(s.direction, s.distance), random),
+            leg.events, drawn.index);
 }
 
-// A direction drawn from a sky, weighed against the phase function that may find it as well.
-Vec3f PathTracer::from_broad(const Vertex& v, RandomStream& random) {
+// A direction drawn from a sky, weighed against the scattering that may find it as well.
+void PathTracer::from_broad(const Scatterer& at, const Leg& leg, RandomStream& random) {
     const auto n = static_cast<float>(scene_.broad.size());
     const auto pick = static_cast<std::size_t>(random.next() * n);
-    const Light* light = scene_.broad[std::min(pick, scene_.broad.size() - 1)];
-    const LightSample s = light->sample(v.point, random.two());
-    if (!(s.pdf > 0) || max_component(s.weight) <= 0) return {};
-    const Ray shadow{v.point, s.direction};
-    if (is_blocked(shadow)) return {};
-    const float phase = value(scene_.media[v.medium]->phase(), dot(v.forward, Vec3f(s.direction)));
-    // The density of this direction is pdf / n, its share of the heuristic pdf / n / (pdf / n +
-    // phase), and s.weight is radiance / pdf.
-    const float weight = phase * n * (s.pdf / n) / (s.pdf / n + phase);
-    return v.weight.value() * weight * s.weight * transmittance(shadow, random);
+    const PathScene::Drawn& drawn = scene_.broad[std::min(pick, scene_.broad.size() - 1)];
+    const LightSample s = drawn.light->sample(at.point, random.two());
+    if (!(s.pdf > 0) || max_component(s.weight) <= 0) return;
+    const Vec3f value = at.value(s.direction);
+    if (max_component(value) <= 0) return;
+    const float weight = n * (s.pdf / n) / (s.pdf / n + at.pdf(s.direction));
+    deposit(leg.weight.value() * weight * value * s.weight *
+                shadow(at, at.leave(s.direction, s.distance), random),
+            leg.events, drawn.index);
 }
 
-// Radiance that a path of this direction meets at infinity, with its share of the balance heuristic
-// against from_broad(); `pdf` of the direction in 1/sr.
-Vec3f PathTracer::from_infinity(const Vec3d& direction, float pdf) const {
-    Vec3f sum = scene_.even_radiance();
-    const auto n = static_cast<float>(scene_.broad.size());
-    for (const Light* l : scene_.broad) {
-        const Vec3f radiance = l->radiance(direction);
-        if (max_component(radiance) <= 0) continue;
-        sum += radiance * (pdf / (pdf + l->pdf({}, direction) / n));
+// What a path meets at infinity. The camera sees the background; what was drawn by a density is
+// weighed against from_broad(), and suns are left to from_sun(); mirrors show all.
+void PathTracer::from_infinity(const Leg& leg, const Vec3f& transmittance) {
+    const Vec3f weight = leg.weight.value() * transmittance;
+    const Vec3d& direction = leg.ray.direction;
+    if (leg.events == 0 && leg.mirrors == 0) {
+        const BackgroundSample behind = background(scene_.view, direction);
+        deposit(weight * behind.radiance, 0);
+        result_.alpha -= (weight.x + weight.y + weight.z) / 3 * (1 - behind.alpha);
+        result_.transmittance += weight;
+        return;
     }
-    return sum;
+    for (const auto& d : scene_.even) {
+        deposit(weight * d.light->radiance(direction), leg.events, d.index);
+    }
+    const auto n = static_cast<float>(scene_.broad.size());
+    for (const auto& d : scene_.broad) {
+        const Vec3f radiance = d.light->radiance(direction);
+        if (max_component(radiance) <= 0) continue;
+        const float share =
+            leg.pdf > 0 ? leg.pdf / (leg.pdf + d.light->pdf(leg.from, direction) / n) : 1;
+        deposit(share * weight * radiance, leg.events, d.index);
+    }
+    if (leg.pdf > 0) return;
+    for (const SunSource& sun : scene_.suns) {
+        deposit(weight * sun.light->radiance(direction), leg.events, sun.index);
+    }
+}
+
+// The glow of a surface that a path meets, weighed against from_local().
+void PathTracer::from_surface(const Leg& leg, const SurfaceHit& hit, const Vec3f& transmittance) {
+    if (max_component(hit.emission) <= 0) return;
+    float weight = 1;
+    const SurfaceLight* light = scene_.surface_light[static_cast<std::size_t>(hit.surface)];
+    if (leg.pdf > 0 && light) {
+        const float other = scene_.local_share(*light, leg.from) * light->pdf_of_hit(leg.from, hit);
+        weight = leg.pdf / (leg.pdf + other);
+    }
+    deposit_glow(weight * leg.weight.value() * transmittance * hit.emission, leg.events);
+}
+
+// The share of the light of suns and sampled lights that does not arrive at a surface.
+float PathTracer::missed_light(const Scatterer& at, RandomStream& random) {
+    float all = 0, arrives = 0;
+    const auto add = [&](const LightSample& s) {
+        const Vec3f light = at.value(s.direction) * s.weight;
+        if (!(max_component(light) > 0)) return;
+        all += luminance(light);
+        arrives += luminance(light * shadow(at, at.leave(s.direction, s.distance), random));
+    };
+    for (const SunSource& sun : scene_.suns) add(sun.light->sample(at.point, random.two()));
+    for (const auto& d : scene_.local) add(d.light->sample(at.point, random.two()));
+    for (const auto& d : scene_.broad) add(d.light->sample(at.point, random.two()));
+    for (const auto& d : scene_.even) add(d.light->sample(at.point, random.two()));
+    return all > 0 ? std::clamp(1 - arrives / all, 0.0f, 1.0f) : 0;
 }
 
 }  // namespace gischt

@@ -12,11 +12,11 @@ constexpr float least_opacity = 0.01f;  // below, nothing was hit
 class PathWorker : public PixelWorker {
   public:
     PathWorker(const View& view, const PathScene& scene, int depth)
-        : view_(view), tracer_(scene, depth) {}
+        : view_(view), tracer_(scene, depth, false) {}
 
     void sample(const PixelSample& at, FilmSample& out, std::span<float>) override {
         const Ray ray = view_.camera.ray(at.film_x, at.film_y, at.lens, at.time);
-        const TracedRay seen = tracer_(ray, at.numbers);
+        const TracedRay& seen = tracer_(ray, static_cast<float>(at.time), at.numbers);
         rays = tracer_.rays();
         lookups = tracer_.lookups();
         out.radiance = seen.radiance;
@@ -41,6 +41,7 @@ class PathMethod : public RenderMethod {
         const PathScene scene(view, params_, job);
         ProgressiveTask task;
         task.method = "path";
+        task.layout = aov_layout(view, settings, {.method = "path"});
         task.make_worker = [&] {
             return std::make_unique<PathWorker>(view, scene, settings.depth);
         };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "image/color.h"
 #include "optics/environment.h"
 #include "optics/local_lights.h"
 #include "optics/medium.h"
@@ -34,40 +35,60 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
                     fmt::format("it takes at most {}", most_media));
     }
     for (const auto& m : view.media) {
-        if (m->majorant() == 0 && !m->is_emissive()) continue;
-        media.push_back(m.get());
+        if (m->majorant() == 0 && m->emission_majorant() == 0) continue;
         is_grey = is_grey && has_equal_channels(m->cross_sections().extinction());
         is_emissive = is_emissive || m->is_emissive();
+        if (!view.surfaces.is_interior(m.get())) media.push_back(m.get());
     }
+    for (int i = 0; i < view.surfaces.size(); ++i) {
+        const SurfaceInfo& info = view.surfaces.info(i);
+        has_interiors = has_interiors || info.has_interior;
+        if (!info.medium) continue;
+        is_grey = is_grey && has_equal_channels(info.medium->cross_sections().extinction());
+        is_emissive = is_emissive || info.medium->is_emissive();
+    }
+    surface_light.resize(static_cast<std::size_t>(view.surfaces.size()));
+    for (const auto& light : view.surfaces.lights()) {
+        surface_light[static_cast<std::size_t>(light->surface())] = light.get();
+        local.push_back({light.get(), -1});
+    }
+    sort_lights(job);
+}
+
+void PathScene::sort_lights(Job& job) {
     const PhaseTimer timer(job, "light grids");
-    for (const LightPtr& light : view.lights) {
+    for (std::size_t i = 0; i < view.lights.size(); ++i) {
+        const Light* light = view.lights[i].get();
+        const int index = static_cast<int>(i);
         if (!light->is_infinite()) {
-            local.push_back(light.get());
-        } else if (const auto* sun = dynamic_cast<const SunLight*>(light.get())) {
-            SunSource& source = suns.emplace_back();
-            source.light = sun;
-            source.direction = sun->direction();
-            if (params.shadow != TransmittanceEstimator::Cached) continue;
-            for (const Medium* m : media) {
-                // What has no voxels is integrated at once.
-                source.depth.push_back(
-                    m->cell_size() > 0 && m->strength() > 0
-                        ? std::make_unique<SunDepth>(*m, source.direction,
-                                                     spacing_of(*m, params.cache_nodes), job)
-                        : nullptr);
+            local.push_back({light, index});
+        } else if (const auto* sun = dynamic_cast<const SunLight*>(light)) {
+            suns.push_back({sun, index, sun->direction(), {}});
+            if (params.shadow == TransmittanceEstimator::Cached && !has_interiors) {
+                make_grids(suns.back(), job);
             }
-        } else if (dynamic_cast<const ConstantLight*>(light.get())) {
-            even.push_back(light.get());
+        } else if (dynamic_cast<const ConstantLight*>(light)) {
+            even.push_back({light, index});
         } else {
-            broad.push_back(light.get());
+            broad.push_back({light, index});
         }
     }
 }
 
-Vec3f PathScene::even_radiance() const {
-    Vec3f sum;
-    for (const Light* light : even) sum += light->radiance({0, 0, 1});
-    return sum;
+void PathScene::make_grids(SunSource& sun, Job& job) const {
+    for (const Medium* m : media) {
+        // What has no voxels is integrated at once.
+        sun.depth.push_back(m->cell_size() > 0 && m->strength() > 0
+                                ? std::make_unique<SunDepth>(
+                                      *m, sun.direction, spacing_of(*m, params.cache_nodes), job)
+                                : nullptr);
+    }
+}
+
+float PathScene::local_share(const Light& light, const Vec3d& point) const {
+    float total = 0;
+    for (const Drawn& d : local) total += luminance(d.light->mean_radiance(point));
+    return total > 0 ? luminance(light.mean_radiance(point)) / total : 0;
 }
 
 }  // namespace gischt

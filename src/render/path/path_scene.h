@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "optics/surface_light.h"
 #include "optics/view.h"
 #include "render/path/path_params.h"
 #include "render/path/sun_source.h"
@@ -18,17 +19,30 @@ struct PathScene {
 
     const View& view;
     const PathParams& params;
-    std::vector<const Medium*> media;
-    bool is_grey = true;       // all channels of all media have the same extinction
-    bool is_emissive = false;  // a medium glows
+    std::vector<const Medium*> media;  // those that fill no surface
+    bool is_grey = true;               // all channels of all media have the same extinction
+    bool is_emissive = false;          // a medium glows
+    bool has_interiors = false;        // a surface has an inside
 
-    std::vector<SunSource> suns;      // reached by sampling them only
-    std::vector<const Light*> local;  // at finite places
-    std::vector<const Light*> broad;  // at infinity, sampled and met by chance
-    std::vector<const Light*> even;   // the same from everywhere: met by chance only
+    // A light that is one of many to be drawn from.
+    struct Drawn {
+        const Light* light = nullptr;
+        int index = -1;  // in view.lights; -1 for a surface
+    };
+    std::vector<SunSource> suns;  // reached by sampling them only
+    std::vector<Drawn> local;     // at finite places
+    std::vector<Drawn> broad;     // at infinity, sampled and met by chance
+    std::vector<Drawn> even;      // the same from everywhere: met by chance only
+    // By surface: the light that it is, null where it cannot be sampled.
+    std::vector<const SurfaceLight*> surface_light;
 
-    // Radiance of what a path meets at infinity, the suns left out unless they are asked for.
-    Vec3f even_radiance() const;
+    // Chance with which a light at a finite place is drawn at a point, in proportion to how
+    // brightly it would shine there.
+    float local_share(const Light& light, const Vec3d& point) const;
+
+  private:
+    void sort_lights(Job& job);
+    void make_grids(SunSource& sun, Job& job) const;
 };
 
 }  // namespace gischt

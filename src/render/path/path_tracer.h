@@ -5,73 +5,117 @@
 #include <vector>
 
 #include "math/pixel_sampler.h"
+#include "optics/interior.h"
 #include "render/path/path_scene.h"
 #include "render/path/ray_profile.h"
 
 namespace gischt {
 
-// What a camera ray sees.
+// What a camera ray sees, in W/(m^2 sr) where it is radiance.
 struct TracedRay {
-    Vec3f radiance;  // W/(m^2 sr), the background included
+    Vec3f radiance;  // the background included
     float alpha = 0;
     float depth = 0, opacity = 0;  // sum of opacity times distance, and what to divide it by
+    // Parts of the radiance: scattered once, more often, not at all but from something that glows.
+    Vec3f direct, indirect, emission;
+    Vec3f albedo, normal;         // of the first scattering, times the opacity
+    Vec3f transmittance;          // of what lies in front of the background
+    std::vector<Vec3f> of_light;  // by index in view.lights, where asked for
+};
+
+// Where light is scattered: a point of a medium, or of a surface.
+struct Scatterer {
+    Vec3d point;
+    Vec3f forward;                   // direction in which the path came
+    const Medium* medium = nullptr;  // or
+    const SurfaceHit* hit = nullptr;
+    const Bsdf* bsdf = nullptr;
+
+    // The phase function in 1/sr, or the scattering function times the cosine.
+    Vec3f value(const Vec3d& direction) const;
+    // The density with which a new direction is drawn, 1/sr.
+    float pdf(const Vec3d& direction) const;
+    Ray leave(const Vec3d& direction, double distance) const;
 };
 
 // Follows paths through a scene; keeps scratch memory, so one per thread.
 class PathTracer {
   public:
-    PathTracer(const PathScene& scene, int depth);
+    // `depth`: most scattering events of a path; mirrors and refractions of smooth surfaces are not
+    // counted.
+    PathTracer(const PathScene& scene, int depth, bool separates_lights);
 
-    TracedRay operator()(const Ray& ray, const PixelSampler& sampler);
+    const TracedRay& operator()(const Ray& ray, float moment, const PixelSampler& sampler);
 
     std::int64_t rays() const { return rays_; }
     std::int64_t lookups() const { return tracker_.lookups; }
 
   private:
-    // A place in a medium at which light is scattered.
-    struct Vertex {
-        Vec3d point;
-        Vec3f forward;  // direction in which the path came
-        std::size_t medium = 0;
-        PathWeight weight;  // the albedo of this scattering included
-        int events = 1;     // scatterings up to and including this one
-        // The direction was drawn from this medium's phase function with this density, and suns are
-        // also reached by halos; null at the first vertex.
-        const Medium* halo_of = nullptr;
-        float phase_pdf = 0;
+    // The state of a path between two scatterings.
+    struct Leg {
+        Ray ray;
+        PathWeight weight;
+        float start = 1;                  // the weight with which the path set out
+        int events = 0;                   // scatterings so far
+        int mirrors = 0;                  // delta scatterings of surfaces so far
+        Vec3d from;                       // the last scattering that was none of these
+        float pdf = 0;                    // of the direction from there, 1/sr; 0: nothing was drawn
+        const Medium* halo_of = nullptr;  // see from_sun()
     };
-    // Where a path meets a surface.
-    struct Bounce;
+    enum class End { Infinity, Surface, Collision };
 
-    void see_through_profile(const Ray& ray, const PixelSampler& sampler, TracedRay& result);
-    void see_by_tracking(const Ray& ray, const std::optional<SurfaceHit>& hit,
-                         const PixelSampler& sampler, TracedRay& result);
-    Vec3f seen_behind(const Ray& ray, const std::optional<SurfaceHit>& hit, RandomStream& random,
-                      float& alpha);
+    void see(Leg leg, const PixelSampler& sampler);
+    void see_through(const Leg& leg, const PixelSampler& sampler);
+    bool shows(const Leg& leg, const SurfaceHit& hit, RandomStream& random);
+    void note_first(float share, const Vec3d& point, const Vec3f& albedo, const Vec3f& normal);
 
-    // Light that reaches the vertex from the vertex on, after the vertex' own direct light.
-    Vec3f follow(Vertex vertex, RandomStream& random);
-    Vec3f follow_surface(const SurfaceHit& hit, const Vec3f& forward, PathWeight weight, int events,
-                         RandomStream& random);
-    bool survives(PathWeight& weight, RandomStream& random) const;
+    void follow(Leg leg, RandomStream& random);
+    End fly(Leg& leg, RandomStream& random, Collision& collision, std::optional<SurfaceHit>& hit);
+    End look(Leg& leg, RandomStream& random, std::optional<SurfaceHit>& hit);
+    bool scatter_in_medium(Leg& leg, const Collision& collision, RandomStream& random);
+    bool scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStream& random);
+    void go_on(const Scatterer& at, Leg& leg, RandomStream& random);
+    bool survives(Leg& leg, RandomStream& random) const;
 
-    Vec3f direct_light(const Vertex& vertex, RandomStream& random);
-    Vec3f from_sun(const SunSource& sun, const Vertex& vertex, RandomStream& random);
-    Vec3f from_local(const Vertex& vertex, RandomStream& random);
-    Vec3f from_broad(const Vertex& vertex, RandomStream& random);
-    Vec3f from_halo(const Vertex& vertex, RandomStream random);
-    Vec3f from_infinity(const Vec3d& direction, float pdf) const;
+    void direct_light(const Scatterer& at, const Leg& leg, RandomStream& random);
+    void from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
+                  RandomStream& random);
+    void from_local(const Scatterer& at, const Leg& leg, RandomStream& random);
+    void from_broad(const Scatterer& at, const Leg& leg, RandomStream& random);
+    void from_halo(const Scatterer& at, const Leg& leg, RandomStream random);
+    void from_infinity(const Leg& leg, const Vec3f& transmittance);
+    void from_surface(const Leg& leg, const SurfaceHit& hit, const Vec3f& transmittance);
 
-    Vec3f transmittance(const Ray& ray, RandomStream& random);
-    bool is_blocked(const Ray& ray) const { return scene_.view.surfaces.is_blocked(ray); }
+    float missed_light(const Scatterer& at, RandomStream& random);
+
+    Vec3f shadow(const Scatterer& at, const Ray& ray, RandomStream& random);
+    bool is_blocked(const Ray& ray) const { return scene_.view.surfaces.is_blocked(ray, moment_); }
+    std::optional<SurfaceHit> intersect(const Ray& ray, RayKind kind = RayKind::Other) {
+        ++rays_;
+        return scene_.view.surfaces.intersect(ray, moment_, kind);
+    }
+    // Passes a boundary; `inside_` decides which media the tracker sees.
+    void cross(const SurfaceHit& hit);
+    void take_media();
+    bool passes(const SurfaceHit& hit) const;
     bool has_halo(const Medium& medium) const;
+
+    // Adds light that was scattered `events` times.
+    void deposit(const Vec3f& radiance, int events, int light = -1);
+    // The same of light that something on the path gave off itself.
+    void deposit_glow(const Vec3f& radiance, int events);
 
     const PathScene& scene_;
     int depth_;
     int hero_ = 0;
+    float moment_ = 0.5f;
+    Ray camera_ray_;
+    std::optional<InteriorStack> inside_;  // only where surfaces have an inside
+    const Medium* interior_ = nullptr;
     Tracker tracker_;
     RayProfile profile_;
     std::vector<ProfilePoint> points_;
+    TracedRay result_;
     std::int64_t rays_ = 0;
 };
 

@@ -28,12 +28,8 @@ struct RandomStream {
                 static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24f};
     }
     // For a turn and for a flight.
-    float leading() {
-        return dimension < last_leading ? sampler.one(dimension++) : next();
-    }
-    Vec2f leading_two() {
-        return dimension < last_leading ? sampler.two(dimension++) : two();
-    }
+    float leading() { return dimension < last_leading ? sampler.one(dimension++) : next(); }
+    Vec2f leading_two() { return dimension < last_leading ? sampler.two(dimension++) : two(); }
 };
 
 // The weight of a path in three channels. Distances are drawn in one of them, the hero, and the

@@ -10,12 +10,6 @@ namespace gischt {
 Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& towards,
                         const PathParams& params, Tracker& tracker, RandomStream& random) {
     const Ray ray{point, towards};
-    if (!sun.is_cached()) {
-        const auto estimator = params.shadow == TransmittanceEstimator::Cached
-                                   ? TransmittanceEstimator::ResidualRatio
-                                   : params.shadow;
-        return tracker.transmittance(ray, estimator, random);
-    }
     Vec3f depth;
     for (std::size_t m = 0; m < tracker.media.size(); ++m) {
         const Medium& medium = *tracker.media[m];

@@ -14,6 +14,7 @@ namespace gischt {
 // A light at infinity that comes from (nearly) one direction: a sun.
 struct SunSource {
     const Light* light = nullptr;
+    int index = -1;   // in view.lights
     Vec3d direction;  // unit, towards its centre
     // Optical depth towards it per unit of cross section, by medium; empty without cache.
     std::vector<std::unique_ptr<const SunDepth>> depth;
@@ -22,8 +23,8 @@ struct SunSource {
 };
 
 // The transmittance from a point to a sun along `towards` (a direction within its disc), without
-// bias: from the cache, and with some chance p the exact one minus the cached one over p.
-// The chance follows what may be wrong: nothing of the light arrives, or next to all of it.
+// bias: from the cache that it must have, and with some chance p the exact one minus the cached one
+// over p. The chance follows what may be wrong: nothing of the light arrives, or next to all of it.
 Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& towards,
                         const PathParams& params, Tracker& tracker, RandomStream& random);
 

@@ -46,6 +46,12 @@ struct Tracker {
     Vec3f ratio_tracking(const Ray& ray, bool with_control, RandomStream& random);
 };
 
+// The estimator of shadow rays for which there is no cache.
+inline TransmittanceEstimator shadow_estimator(const PathParams& params) {
+    return params.shadow == TransmittanceEstimator::Cached ? TransmittanceEstimator::ResidualRatio
+                                                           : params.shadow;
+}
+
 // Extinction of a run per channel at t, 1/m.
 Vec3f extinction_at(const MediaRun& run, double t);
 

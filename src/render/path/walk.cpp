@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// A path from scattering to scattering.
+#include <algorithm>
+
+#include "optics/material.h"
+#include "render/path/path_tracer.h"
+
+namespace gischt {
+
+static constexpr int most_mirrors = 64;      // delta scatterings of one path
+static constexpr int most_boundaries = 256;  // passed on one leg
+
+void PathTracer::follow(Leg leg, RandomStream& random) {
+    for (;;) {
+        Collision collision;
+        std::optional<SurfaceHit> hit;
+        const bool is_last = leg.events >= depth_;
+        // What comes after the last scattering is only looked at, without a chance to collide,
+        // unless there is a glow to be met on the way.
+        const End end = is_last && !scene_.is_emissive ? look(leg, random, hit)
+                                                       : fly(leg, random, collision, hit);
+        if (end == End::Infinity) return from_infinity(leg, Vec3f(1));
+        if (end == End::Collision) {
+            if (is_last || !scatter_in_medium(leg, collision, random)) return;
+            continue;
+        }
+        from_surface(leg, *hit, Vec3f(1));
+        if (!scatter_at_surface(leg, *hit, random)) return;
+    }
+}
+
+// On to the next collision with a medium, surface, or infinity. Light emitted on the way counts.
+PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& collision,
+                                std::optional<SurfaceHit>& hit) {
+    for (int i = 0; i < most_boundaries; ++i) {
+        hit = intersect(leg.ray);
+        if (hit) leg.ray.t_max = hit->t;
+        if (!tracker_.media.empty()) {
+            Vec3f glow;
+            const bool collides =
+                tracker_.fly(leg.ray, hero_, leg.weight, random, collision, &glow);
+            if (scene_.is_emissive) deposit_glow(glow, leg.events);
+            if (collides) return End::Collision;
+        }
+        if (!hit) return End::Infinity;
+        if (!passes(*hit)) return End::Surface;
+        cross(*hit);
+        leg.ray = leaving_ray(*hit, leg.ray.direction);
+    }
+    leg.weight.weight = {};  // lost between surfaces that coincide
+    return End::Infinity;
+}
+
+// The same, the media dimming the light by their transmittance.
+PathTracer::End PathTracer::look(Leg& leg, RandomStream& random, std::optional<SurfaceHit>& hit) {
+    for (int i = 0; i < most_boundaries; ++i) {
+        hit = intersect(leg.ray);
+        if (hit) leg.ray.t_max = hit->t;
+        const bool is_dark = !hit && scene_.even.empty() && scene_.broad.empty() && leg.pdf > 0;
+        if (!tracker_.media.empty() && !is_dark) {
+            leg.weight.weight =
+                leg.weight.weight *
+                tracker_.transmittance(leg.ray, shadow_estimator(scene_.params), random);
+        }
+        if (!hit) return End::Infinity;
+        if (!passes(*hit)) return End::Surface;
+        cross(*hit);
+        leg.ray = leaving_ray(*hit, leg.ray.direction);
+    }
+    leg.weight.weight = {};
+    return End::Infinity;
+}
+
+// False where the path ends.
+bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomStream& random) {
+    const Medium* medium = tracker_.media[collision.medium];
+    const CrossSections& cross = medium->cross_sections();
+    const Vec3d point = leg.ray.at(collision.t);
+    const Vec3f albedo = cross.scattering / max(cross.extinction(), Vec3f(1e-30f));
+    if (leg.events == 0 && leg.mirrors == 0) note_first(1, point, albedo, {});
+    // fly() counted the extinction of each channel over that of the hero.
+    leg.weight.weight = leg.weight.weight * albedo;
+    ++leg.events;
+    if (!survives(leg, random)) return false;
+    const Scatterer at{point, Vec3f(leg.ray.direction), medium, nullptr, nullptr};
+    direct_light(at, leg, random);
+    go_on(at, leg, random);
+    return true;
+}
+
+// Leaves a point of a medium in a new direction.
+void PathTracer::go_on(const Scatterer& at, Leg& leg, RandomStream& random) {
+    const bool is_last = leg.events >= depth_;
+    if (!is_last) from_halo(at, leg, random.branch(1));
+    const PhaseSample next = sample(at.medium->phase(), at.forward, random.leading_two());
+    leg.ray = {at.point, Vec3d(next.direction)};
+    leg.from = at.point;
+    leg.pdf = next.pdf;
+    leg.halo_of = !is_last && has_halo(*at.medium) ? at.medium : nullptr;
+}
+
+// False where the path ends.
+bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStream& random) {
+    const bool is_first = leg.events == 0 && leg.mirrors == 0;
+    if (is_first && !shows(leg, hit, random)) return false;
+    const Bsdf bsdf = scene_.view.surfaces.bsdf(hit, inside_ ? inside_->at(hit).relative_ior : 0);
+    const Vec3d out = -leg.ray.direction;
+    if (is_first) {
+        const Vec3f w = leg.weight.value();
+        note_first((w.x + w.y + w.z) / 3, hit.point, bsdf.albedo_estimate(out),
+                   Vec3f(hit.shading_normal));
+    }
+    if (!bsdf.is_delta_only()) {
+        if (leg.events >= depth_) return false;
+        Leg lit = leg;
+        ++lit.events;
+        lit.halo_of = nullptr;
+        direct_light({hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf}, lit, random);
+    }
+    const Vec2f u = random.leading_two();
+    const auto next = bsdf.sample(out, u, random.next());
+    if (!next) return false;
+    leg.weight.weight = leg.weight.weight * next->weight;
+    leg.pdf = next->pdf;
+    leg.halo_of = nullptr;
+    if (next->is_delta) {
+        if (++leg.mirrors > most_mirrors) return false;
+    } else {
+        ++leg.events;
+        leg.from = hit.point;
+    }
+    if (next->is_transmission) cross(hit);
+    leg.ray = leaving_ray(hit, next->direction);
+    return survives(leg, random);
+}
+
+// Holdouts cut a hole; shadow catchers show what light they miss, as alpha.
+bool PathTracer::shows(const Leg& leg, const SurfaceHit& hit, RandomStream& random) {
+    const SurfaceInfo& info = scene_.view.surfaces.info(hit.surface);
+    if (!info.holdout && !info.shadow_catcher) return true;
+    const Vec3f w = leg.weight.value();
+    float shown = 1;
+    if (info.shadow_catcher) {
+        const Bsdf bsdf = scene_.view.surfaces.bsdf(hit);
+        shown = missed_light({hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf}, random);
+        shown = 1 - shown;
+    }
+    result_.alpha -= (w.x + w.y + w.z) / 3 * shown;
+    return false;
+}
+
+bool PathTracer::survives(Leg& leg, RandomStream& random) const {
+    const float strength = max_component(leg.weight.value());
+    const float threshold = static_cast<float>(scene_.params.roulette) * leg.start;
+    if (strength >= threshold) return true;
+    if (random.next() * threshold >= strength) return false;
+    leg.weight.weight *= threshold / strength;
+    return true;
+}
+
+}  // namespace gischt
