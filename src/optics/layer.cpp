@@ -217,6 +217,7 @@ void LayerWalk::fill(LayerRun& run, double t1, int band) const {
         const double h = band < 0 ? 0 : layer_->height_at(path_, t_);
         run.min = run.mean = run.max = profile.density(h);
         run.entry.x = static_cast<float>(h);
+        return;
     } else {
         const auto inside = [&](double t) {
             const auto b = layer_->breaks_.begin() + band;
