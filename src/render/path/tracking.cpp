@@ -194,6 +194,11 @@ static double exact_integral(const Medium& medium, const MediumSegment& segment,
 
 double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t& lookups) {
     if (medium.strength() == 0) return 0;
+    // Media without a grid know it at once.
+    if (const auto depth = medium.optical_depth(ray, ray.t_min, ray.t_max)) {
+        const auto sum = static_cast<double>(*depth / medium.strength());
+        return std::min(sum / length(ray.direction), 1e30);
+    }
     const double enough = 24.0 / static_cast<double>(medium.strength());
     double sum = 0;
     SegmentWalk walk = medium.segments(ray, BrickGrain::Bricks);
