@@ -2,6 +2,7 @@
 // Light that reaches a scattering point straight from the lights, from suns also through one more
 // scattering, and what a path meets by itself.
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "image/color.h"
@@ -62,6 +63,31 @@ void PathTracer::direct_light(const Scatterer& at, const Leg& leg, RandomStream&
     for (const SunSource& sun : scene_.suns) from_sun(sun, at, leg, 1, random);
     if (!scene_.local.empty()) from_local(at, leg, random);
     if (!scene_.broad.empty()) from_broad(at, leg, random);
+    if (!scene_.glow.is_empty()) from_glow(at, leg, random);
+}
+
+// Media that glow: the direction of a point of theirs, and all that glows along it.
+void PathTracer::from_glow(const Scatterer& at, const Leg& leg, RandomStream& random) {
+    const float choice = random.next();
+    const Vec2f place = random.two();
+    const EmissionSample s =
+        scene_.glow.sample(at.point, choice, {place.x, place.y, random.next()});
+    if (!(s.pdf > 0)) return;
+    const Vec3d way = s.point - at.point;
+    const double distance = length(way);
+    if (!(distance > 0)) return;
+    const Vec3d direction = way / distance;
+    const Vec3f value = at.value(direction);
+    if (max_component(value) <= 0) return;
+    Ray ray = at.leave(direction, std::numeric_limits<double>::infinity());
+    if (const auto hit = intersect(ray)) ray.t_max = hit->t;
+    const float pdf = scene_.glow.direction_pdf(ray);
+    if (!(pdf > 0)) return;
+    Vec3f glow;
+    PathWeight weight = leg.weight;
+    Collision end;
+    tracker_.fly(ray, hero_, weight, random, end, &glow);
+    deposit(value * glow * (1 / (pdf + at.pdf(direction))), leg.events);
 }
 
 void PathTracer::from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
@@ -111,8 +137,8 @@ void PathTracer::from_halo(const Scatterer& at, const Leg& leg, RandomStream ran
     if (fly(next, random, collision, hit) == End::Collision) {
         const Medium* other = tracker_.media[collision.medium];
         const CrossSections& cross = other->cross_sections();
-        next.weight.weight =
-            next.weight.weight * cross.scattering / max(cross.extinction(), Vec3f(1e-30f));
+        next.weight.weight = next.weight.weight * collision.color * cross.scattering /
+                             max(cross.extinction(), Vec3f(1e-30f));
         ++next.events;
         from_sun(sun, {next.ray.at(collision.t), flight.direction, other, nullptr, nullptr}, next,
                  factor, random);

@@ -52,6 +52,7 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
         surface_light[static_cast<std::size_t>(light->surface())] = light.get();
         local.push_back({light.get(), -1});
     }
+    if (is_emissive && !has_interiors) glow = EmissionSampler(view.media);
     sort_lights(job);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "optics/emission_sampler.h"
 #include "optics/surface_light.h"
 #include "optics/view.h"
 #include "render/path/path_params.h"
@@ -33,6 +34,7 @@ struct PathScene {
     std::vector<Drawn> local;     // at finite places
     std::vector<Drawn> broad;     // at infinity, sampled and met by chance
     std::vector<Drawn> even;      // the same from everywhere: met by chance only
+    EmissionSampler glow;         // media that glow; empty where surfaces have insides
     // By surface: the light that it is, null where it cannot be sampled.
     std::vector<const SurfaceLight*> surface_light;
 

@@ -81,6 +81,8 @@ class PathTracer {
     void from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
                   RandomStream& random);
     void from_local(const Scatterer& at, const Leg& leg, RandomStream& random);
+    void from_glow(const Scatterer& at, const Leg& leg, RandomStream& random);
+    float glow_share(const Leg& leg) const;
     void from_broad(const Scatterer& at, const Leg& leg, RandomStream& random);
     void from_halo(const Scatterer& at, const Leg& leg, RandomStream random);
     void from_infinity(const Leg& leg, const Vec3f& transmittance);

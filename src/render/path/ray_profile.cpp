@@ -152,7 +152,11 @@ ProfilePoint RayProfile::make_point(const Piece& piece, double t, float pdf, flo
         const auto begin = static_cast<float>(piece.t0 - a.segment.anchor);
         const CrossSections& cross = a.medium->cross_sections();
         depth += partial_integral(a, begin, s) * cross.extinction();
-        scattering[i] = a.medium->density_at(a.segment, begin + s) * cross.scattering;
+        const float density = a.medium->density_at(a.segment, begin + s);
+        scattering[i] = density * cross.scattering;
+        if (a.medium->has_color()) {
+            scattering[i] = scattering[i] * a.medium->color_at(a.segment, begin + s, density);
+        }
         total += luminance(scattering[i]);
         lookups += 3;
     }

@@ -32,6 +32,11 @@ Vec3f emission_of(const MediaRun& run, double t) {
     return sum;
 }
 
+Vec3f color_of(const ActiveMedium& a, double t) {
+    if (!a.medium->has_color()) return Vec3f(1);
+    return a.medium->color_at(a.segment, static_cast<float>(t - a.segment.anchor), a.density(t));
+}
+
 }  // namespace
 
 Vec3f extinction_at(const MediaRun& run, double t) {
@@ -53,8 +58,7 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
             ++lookups;
             if (at >= a.density(t) * a.medium->strength()) return false;
         }
-        end.t = t;
-        end.medium = a.index;
+        end = {t, a.index, color_of(a, t)};
         return true;
     }
     Vec3f total;
@@ -68,7 +72,7 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
         below += extinction[hero];
         if (!is_real && at < below) {
             is_real = true;
-            end = {t, a.index};
+            end = {t, a.index, color_of(a, t)};
             const Vec3f ratio = extinction / Vec3f(extinction[hero]);
             weight.weight = weight.weight * ratio;
             weight.rate = weight.rate * ratio;

@@ -14,6 +14,7 @@ namespace gischt {
 struct Collision {
     double t = 0;
     std::size_t medium = 0;  // index in the list of media; the one that scatters
+    Vec3f color{1, 1, 1};    // of its scattering there
 };
 
 // What trackers read and count. One per thread.

@@ -39,7 +39,7 @@ PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& colli
             Vec3f glow;
             const bool collides =
                 tracker_.fly(leg.ray, hero_, leg.weight, random, collision, &glow);
-            if (scene_.is_emissive) deposit_glow(glow, leg.events);
+            if (max_component(glow) > 0) deposit_glow(glow_share(leg) * glow, leg.events);
             if (collides) return End::Collision;
         }
         if (!hit) return End::Infinity;
@@ -49,6 +49,12 @@ PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& colli
     }
     leg.weight.weight = {};  // lost between surfaces that coincide
     return End::Infinity;
+}
+
+// The share of the balance heuristic of what glows on a leg, against from_glow().
+float PathTracer::glow_share(const Leg& leg) const {
+    if (leg.pdf == 0 || scene_.glow.is_empty()) return 1;
+    return leg.pdf / (leg.pdf + scene_.glow.direction_pdf(leg.ray));
 }
 
 // The same, the media dimming the light by their transmittance.
@@ -76,7 +82,8 @@ bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomS
     const Medium* medium = tracker_.media[collision.medium];
     const CrossSections& cross = medium->cross_sections();
     const Vec3d point = leg.ray.at(collision.t);
-    const Vec3f albedo = cross.scattering / max(cross.extinction(), Vec3f(1e-30f));
+    const Vec3f albedo =
+        collision.color * cross.scattering / max(cross.extinction(), Vec3f(1e-30f));
     if (leg.events == 0 && leg.mirrors == 0) note_first(1, point, albedo, {});
     // fly() counted the extinction of each channel over that of the hero.
     leg.weight.weight = leg.weight.weight * albedo;
