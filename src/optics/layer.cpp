@@ -12,6 +12,7 @@ namespace gischt {
 namespace {
 
 constexpr int most_halvings = 32;
+constexpr double never = std::numeric_limits<double>::infinity();
 
 void check_positive(const char* what, double value) {
     if (value > 0) return;
@@ -109,7 +110,8 @@ Layer::Path Layer::path(const Ray& ray) const {
 
 double Layer::height_at(const Path& p, double t) const {
     if (!is_round_) return p.height0 + t * p.slope;
-    return std::hypot(p.nearest, (t - p.nearest_t) * p.speed) - radius_;
+    const double s = (t - p.nearest_t) * p.speed;
+    return std::sqrt(p.nearest * p.nearest + s * s) - radius_;
 }
 
 double Layer::time_at(const Path& p, int sign, double height) const {
@@ -119,26 +121,22 @@ double Layer::time_at(const Path& p, int sign, double height) const {
            sign * std::sqrt(std::max(0.0, (r - p.nearest) * (r + p.nearest))) / p.speed;
 }
 
-// Metres. On a plane the height is linear. Around a sphere with v^2 = r - r_nearest the distance
-// from the nearest point is v sqrt(2 r_nearest + v^2), and everything is smooth in v.
-double Layer::integral(const Path& p, double t0, double t1, bool is_short) const {
+double Layer::integral(const Path& p, double h0, double h1, double span, bool is_short) const {
     if (!is_round_) {
-        const double h0 = height_at(p, t0), h1 = height_at(p, t1), span = (t1 - t0) * p.speed;
         if (profile_.kind == HeightProfile::Kind::Tent) {
             return 0.5 * span * (profile_.density(h0) + profile_.density(h1));
         }
         const double x = (h1 - h0) / profile_.scale;
         return span * profile_.density(h0) * (x == 0 ? 1 : -std::expm1(-x) / x);
     }
-    static const GaussLegendre few(5), many(24);
-    const double n = p.nearest;
-    const auto root = [&](double t) {
-        const double s = std::abs(t - p.nearest_t) * p.speed;
-        return s / std::sqrt(std::hypot(n, s) + n);
-    };
-    const double integral = (is_short ? few : many).integrate(root(t0), root(t1), [&](double v) {
+    // With v^2 = r - r_nearest the distance from the nearest point is v sqrt(2 r_nearest + v^2),
+    // and everything is smooth in v.
+    static const GaussLegendre few(3), many(24);
+    const double n = p.nearest, base = n - radius_;
+    const double v0 = std::sqrt(std::max(0.0, h0 - base)), v1 = std::sqrt(std::max(0.0, h1 - base));
+    const double integral = (is_short ? few : many).integrate(v0, v1, [&](double v) {
         const double stretch = 2 * (n + v * v) / std::sqrt(2 * n + v * v);
-        return stretch * profile_.density(n - radius_ + v * v);
+        return stretch * static_cast<double>(profile_.density(static_cast<float>(base + v * v)));
     });
     return std::abs(integral);
 }
@@ -156,12 +154,14 @@ double Layer::column(const Ray& ray) const {
         }
         const double turn = std::clamp(time_at(p, sign, corner), t0, t1);
         const double low0 = sign > 0 ? t0 : turn, low1 = sign > 0 ? turn : t1;
+        const auto part = [&](double a, double b) {
+            return integral(p, height_at(p, a), height_at(p, b), (b - a) * p.speed, false);
+        };
         if (low0 < low1) {
-            sum += is_round_ ? integral(p, low0, low1, false)
-                             : (low1 - low0) * p.speed * profile_.density(0.0);
+            sum += is_round_ ? part(low0, low1) : (low1 - low0) * p.speed * profile_.density(0.0);
         }
         const double high0 = sign > 0 ? turn : t0, high1 = sign > 0 ? t1 : turn;
-        if (high0 < high1) sum += integral(p, high0, high1, false);
+        if (high0 < high1) sum += part(high0, high1);
     }
     return sum;
 }
@@ -175,7 +175,7 @@ void LayerWalk::start_piece() {
     const Layer::Piece& p = path_.piece[static_cast<std::size_t>(piece_)];
     t_ = p.t0;
     const std::vector<double>& b = layer_->breaks_;
-    const double h = layer_->height_at(path_, t_);
+    const double h = height_ = layer_->height_at(path_, t_);
     // A ray that falls from a break belongs to the band below.
     const auto above = p.sign < 0 ? std::lower_bound(b.begin(), b.end(), h)
                                   : std::upper_bound(b.begin(), b.end(), h);
@@ -190,51 +190,50 @@ bool LayerWalk::next(LayerRun& run) {
         const Layer::Piece& p = path_.piece[static_cast<std::size_t>(piece_)];
         while (t_ < p.t1) {
             const int band = band_;
-            double t1 = p.t1;
-            if (p.sign > 0 && band < last) {
-                t1 = std::min(t1, layer_->time_at(path_, 1, b[static_cast<std::size_t>(band + 1)]));
-                ++band_;
-            } else if (p.sign < 0 && band > (layer_->is_round_ ? 0 : -1)) {
-                t1 = std::min(t1, layer_->time_at(path_, -1, b[static_cast<std::size_t>(band)]));
-                --band_;
+            if (p.sign > 0 && band < last) ++band_;
+            if (p.sign < 0 && band > (layer_->is_round_ ? 0 : -1)) --band_;
+            // The break between the bands, or the end of the piece.
+            double height = b[static_cast<std::size_t>(std::max({band, band_, 0}))];
+            double t1 = band_ != band ? layer_->time_at(path_, p.sign, height) : never;
+            if (!(t1 < p.t1)) {
+                t1 = p.t1;
+                height = layer_->height_at(path_, t1);
             }
             if (!(t1 > t_)) continue;
-            fill(run, t1, band);
+            fill(run, t1, height, band);
             t_ = t1;
+            height_ = height;
             return true;
         }
     }
     return false;
 }
 
-void LayerWalk::fill(LayerRun& run, double t1, int band) const {
+void LayerWalk::fill(LayerRun& run, double t1, double height, int band) const {
     const HeightProfile& profile = layer_->profile_;
     run.t0 = t_;
     run.t1 = t1;
     run.entry = run.step = {};
     const int sign = path_.piece[static_cast<std::size_t>(piece_)].sign;
     if (band < 0 || sign == 0) {  // the same all along
-        const double h = band < 0 ? 0 : layer_->height_at(path_, t_);
+        const double h = band < 0 ? 0 : height_;
         run.min = run.mean = run.max = profile.density(h);
         run.entry.x = static_cast<float>(h);
         return;
     } else {
-        const auto inside = [&](double t) {
-            const auto b = layer_->breaks_.begin() + band;
-            return std::clamp(layer_->height_at(path_, t), b[0], b[1]);
-        };
-        const double a = profile.density(inside(t_)), b = profile.density(inside(t1));
-        run.min = std::min(a, b);
-        run.max = std::max(a, b);
-        run.mean = std::clamp(layer_->integral(path_, t_, t1, true) / ((t1 - t_) * path_.speed),
-                              run.min, run.max);
-        const double h = layer_->height_at(path_, t_);
+        const auto b = layer_->breaks_.begin() + band;
+        const double h0 = std::clamp(height_, b[0], b[1]), h1 = std::clamp(height, b[0], b[1]);
+        const double d0 = profile.density(h0), d1 = profile.density(h1);
+        const double span = (t1 - t_) * path_.speed;
+        run.min = std::min(d0, d1);
+        run.max = std::max(d0, d1);
+        run.mean = std::clamp(layer_->integral(path_, h0, h1, span, true) / span, run.min, run.max);
         if (layer_->is_round_) {
             const double s = (t_ - path_.nearest_t) * path_.speed;
-            run.entry = Vec3f(Vec3d(h, h + layer_->radius_, 0));
+            run.entry = Vec3f(Vec3d(height_, height_ + layer_->radius_, 0));
             run.step = Vec3f(Vec3d(2 * s * path_.speed, path_.speed * path_.speed, 0));
         } else {
-            run.entry.x = static_cast<float>(h);
+            run.entry.x = static_cast<float>(height_);
             run.step.x = static_cast<float>(path_.slope);
         }
     }

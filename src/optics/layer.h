@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "math/fast_math.h"
 #include "math/ray.h"
 
 namespace gischt {
@@ -21,7 +22,7 @@ struct HeightProfile {
 
     // Along rays heights and densities are taken in float.
     float density(float h) const {
-        if (kind == Kind::Exponential) return std::exp(-h / static_cast<float>(scale));
+        if (kind == Kind::Exponential) return fast_exp(-h / static_cast<float>(scale));
         const float off = std::abs(h - static_cast<float>(center)) / static_cast<float>(scale);
         return std::fmax(0.0f, 1 - off);
     }
@@ -58,7 +59,7 @@ class Layer {
     double density(const Vec3d& point) const;
     double greatest_density() const;
     // Integral of the density along the ray from t_min to t_max, metres: in closed form over a
-    // plane, by Gauss-Legendre in the variable in which it is smooth, within 1e-7, over a sphere.
+    // plane, by Gauss-Legendre in the variable in which it is smooth, within 1e-6, over a sphere.
     // May be infinite.
     double column(const Ray& ray) const;
 
@@ -87,8 +88,9 @@ class Layer {
     double height_at(const Path& path, double t) const;
     // Where the ray passes a height, on the piece of that sign.
     double time_at(const Path& path, int sign, double height) const;
-    // Integral of the density over part of a piece on which the profile is smooth, metres.
-    double integral(const Path& path, double t0, double t1, bool is_short) const;
+    // Integral of the density over `span` metres of a piece, from height h0 to h1, between which
+    // the profile is smooth; metres.
+    double integral(const Path& path, double h0, double h1, double span, bool is_short) const;
 
     bool is_round_;
     Vec3d center_;   // of the sphere; flat: the unit vector up
@@ -118,12 +120,12 @@ class LayerWalk {
 
   private:
     void start_piece();
-    void fill(LayerRun& run, double t1, int band) const;
+    void fill(LayerRun& run, double t1, double height, int band) const;
 
     const Layer* layer_;
     Layer::Path path_;
     int piece_ = -1, band_ = 0;  // band b: from break b to b + 1; -1: below a flat layer's base
-    double t_ = 0;
+    double t_ = 0, height_ = 0;  // where the next run begins
 };
 
 // Density of a run at t0 + t, of a layer with this profile.

@@ -161,7 +161,7 @@ class Medium {
     }
     // Optical depth of the strongest channel, in which segments count, along a ray for t in
     // [t0, t1]; the others are in the ratio of their extinction to strength(). Only for media
-    // without a grid: exact, over a sphere within 1e-7. May be infinite.
+    // without a grid: exact, over a sphere within 1e-6. May be infinite.
     std::optional<float> optical_depth(const Ray& ray, double t0, double t1) const;
 
   private:

@@ -213,8 +213,10 @@ static double exact_integral(const Medium& medium, const MediumSegment& segment,
 
 double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t& lookups) {
     if (medium.strength() == 0) return 0;
+    // Media without a grid know it at once.
     if (const auto depth = medium.optical_depth(ray, ray.t_min, ray.t_max)) {
-        return std::min(static_cast<double>(*depth / medium.strength()), 1e30);
+        const auto sum = static_cast<double>(*depth / medium.strength());
+        return std::min(sum / length(ray.direction), 1e30);
     }
     const double enough = 24.0 / static_cast<double>(medium.strength());
     double sum = 0;
