@@ -49,7 +49,7 @@ inline double chi_squared_tail(double statistic, int freedom) {
 inline ChiSquared chi_squared(const std::function<std::optional<Vec3d>(std::uint64_t)>& draw,
                               const std::function<double(const Vec3d&)>& density,
                               std::uint64_t seed) {
-    constexpr int rows = 20, columns = 40, samples = 100000;
+    constexpr int rows = 20, columns = 40, samples = 60000;
     std::vector<double> seen(rows * columns, 0), expected(rows * columns, 0);
     double lost = 0;
     for (std::uint64_t i = 0; i < samples; ++i) {
@@ -78,8 +78,8 @@ inline ChiSquared chi_squared(const std::function<std::optional<Vec3d>(std::uint
         const double z = 0.5 * (z0 + z1), t = 0.5 * (t0 + t1);
         const double a = patch(z0, z, t0, t), b = patch(z, z1, t0, t), c = patch(z0, z, t, t1),
                      d = patch(z, z1, t, t1);
-        if (level >= 3 && std::abs(a + b + c + d - whole) < 1e-7) return a + b + c + d;
-        if (level >= 12) return a + b + c + d;
+        if (level >= 3 && std::abs(a + b + c + d - whole) < 4e-6) return a + b + c + d;
+        if (level >= 10) return a + b + c + d;
         return integrate(z0, z, t0, t, a, level + 1) + integrate(z, z1, t0, t, b, level + 1) +
                integrate(z0, z, t, t1, c, level + 1) + integrate(z, z1, t, t1, d, level + 1);
     };
