@@ -157,7 +157,7 @@ LoadedScene load_bare(const BareRequest& request, Job& job) {
 
     // An extinction of 1/m is the yardstick for the one that suits the size of things.
     const LoadedScene yardstick = load_scene_tree(name, tree, preset, {});
-    const View view = World(yardstick.scene).view({frame}, request.frame, job);
+    const View view = World(yardstick.scene, job).view({frame}, request.frame, job);
     const double depth = optical_depth_percentile(view);
     if (!(depth > 0))
         throw Error(ErrorKind::Input, request.file,
@@ -166,7 +166,7 @@ LoadedScene load_bare(const BareRequest& request, Job& job) {
 
     LoadedScene loaded = load_scene_tree(name, tree, preset, request.overrides);
     if (!request.exposure_given && view.media[0]->is_emissive()) {
-        World world(loaded.scene);
+        World world(loaded.scene, job);
         const double exposure =
             choose_exposure(loaded.scene, world, world.view({frame}, request.frame, job), job);
         tree.set("film", Value()).set("exposure", Value(exposure));
