@@ -216,12 +216,38 @@ CameraParams World::camera(const View& view) const {
     return params;
 }
 
-// A fluid's frame where the scene puts it.
+// The vectors of a field under a linear map.
+static void map_vectors(Field& field, const Transform& map) {
+    auto &x = field.component[0], &y = field.component[1], &z = field.component[2];
+    for (std::size_t i = 0; i < x.values().size(); ++i) {
+        const Vec3d v = map.vector({x.values()[i], y.values()[i], z.values()[i]});
+        x.values()[i] = static_cast<float>(v.x);
+        y.values()[i] = static_cast<float>(v.y);
+        z.values()[i] = static_cast<float>(v.z);
+    }
+    const auto& b = field.background;
+    const Vec3f background(map.vector({b[0], b[1], b[2]}));
+    field.background = {background.x, background.y, background.z};
+}
+
+// A fluid's frame where the scene puts it: lengths grow with it, and what points somewhere turns.
+// Other vectors (colours, say) stay as they are.
 static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& frame,
                                            const Transform& placement) {
     if (placement == Transform{}) return frame;
     auto out = std::make_shared<Frame>(*frame);
-    for (auto& [name, field] : out->fields) field.to_world = placement * field.to_world;
+    const double scale = std::cbrt(placement.determinant());
+    Transform rotation = placement;
+    for (Vec3d& c : rotation.column) c = c / scale;
+    for (auto& [name, field] : out->fields) {
+        field.to_world = placement * field.to_world;
+        if (field.is_vector() && name == "velocity") map_vectors(field, placement);
+        if (field.is_vector() && name == "vorticity") map_vectors(field, rotation);
+        if (field.kind == FieldClass::LevelSet && !field.is_vector() && scale != 1) {
+            for (float& d : field.component[0].values()) d *= static_cast<float>(scale);
+            field.background[0] *= static_cast<float>(scale);
+        }
+    }
     return out;
 }
 
