@@ -142,6 +142,21 @@ class Work(CliCase):
         # Another simulation may not mix with it.
         self.run_gischt("run", "plume", *SMALL, "--set", "seed=5", "--frames", "1-3", "-o", "p", status=2)
 
+    def test_a_preview_is_coarse_and_keeps_to_itself(self):
+        flags = ["--set", "domain.resolution=40", "--size", "48x32", "--frames", "1-2"]
+        self.run_gischt("run", "plume", *flags, "--spp", 1, "-o", "p")
+        final = {name: (self.dir / name).read_bytes() for name in self.files()}
+        for command in (["run", "plume", "-o", "p"], ["sim", "plume", "-o", "p"], ["render", "plume", "--cache", "p", "-o", "x.png"]):
+            self.run_gischt(*command, "--preview", *flags[:2], *(flags[2:] if command[0] != "sim" else flags[4:]))
+        for name, content in final.items():
+            self.assertEqual((self.dir / name).read_bytes(), content, name)
+        self.assertIn("p/preview/plume.mp4", self.files())
+        cells = [self.run_gischt("info", f"{folder}/smoke_0001.vdb").stdout for folder in ("p", "p/preview")]
+        self.assertIn("0.1 m", cells[0])
+        self.assertIn("0.2 m", cells[1])
+        # The folder of the final frames is still what it says.
+        self.run_gischt("render", "p", "--preview", "-o", "y.png", *flags[2:4])
+
     def test_threads_give_the_same_bytes(self):
         for threads in (1, 2):
             self.run_gischt("run", "plume", *SMALL, "--frames", "1-4", "-o", f"t{threads}", "--threads", threads)
