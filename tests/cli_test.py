@@ -197,6 +197,26 @@ class Work(CliCase):
         self.run_gischt("sim", "plume", "--set", "domain.resolution=32", "--frames", "1-8", "-o", "c")
         self.run_gischt("render", "cloud", "--set", "fluid.file=c/smoke_0008.vdb", "--size", "32x20", "--spp", 1, "-o", "b.exr")
 
+    def picture_of_small_cloud(self, *flags):
+        self.run_gischt("render", "cloud", "--set", "fluid.resolution=32", "-o", "x.exr", "--stats", "s.json", *flags)
+        return json.loads((self.dir / "s.json").read_text())["images"][0]
+
+    def test_time_limit(self):
+        # The light's grids and a first sample of every pixel are always made: how long they take depends on the machine.
+        first = self.picture_of_small_cloud("--size", "480x270", "--spp", 1)["wall_seconds"]
+        picture = self.picture_of_small_cloud("--size", "480x270", "--spp", 100000, "--time", "3s")
+        self.assertGreater(picture["wall_seconds"], 3)
+        self.assertLess(picture["wall_seconds"], 3 + 2 * first + 1)
+        self.assertGreater(picture["samples_per_pixel"], 1)
+        self.assertLess(picture["samples_per_pixel"], 100000)
+
+    def test_noise_limit(self):
+        rough, fine = (self.picture_of_small_cloud("--size", "96x64", "--spp", 4096, "--noise", noise) for noise in (0.05, 0.01))
+        self.assertLessEqual(rough["noise"], 0.05)
+        self.assertLessEqual(fine["noise"], 0.01)
+        self.assertLess(rough["samples_per_pixel"], fine["samples_per_pixel"])
+        self.assertLess(fine["samples_per_pixel"], 4096)
+
     def test_field_pictures(self):
         self.run_gischt("render", "smoke-2d", "--set", "domain.resolution=48", "--frames", "4", "-o", "f.png")
         self.assertEqual(self.files(), ["f.png"])
