@@ -36,7 +36,7 @@ std::vector<Case> cases() {
     static const EnergyTable smooth_coat(0, 1.5), rough_coat(0.25, 1.5);
     std::vector<Case> all;
     all.push_back({"lambert", LambertLobe{Vec3f(1)}});
-    for (const double alpha : {0.02, 0.1, 0.5, 1.0}) {
+    for (const double alpha : {0.05, 0.3, 1.0}) {
         const std::string a = " alpha " + std::to_string(alpha);
         all.push_back({"conductor" + a, ConductorLobe{Vec3f(1), {}, true, alpha, nullptr}});
         all.push_back({"glass" + a, DielectricLobe{1.5, Vec3f(1), alpha, nullptr}});
@@ -74,10 +74,10 @@ double over_directions(const Vec3d& axis, F&& f) {
 // lobes are the missing rest. One test per case and angle at a family-wise significance of 1e-3.
 TEST(Bsdf, SamplersHaveTheirDensity) {
     const auto all = cases();
-    const double significance = 1e-3 / (3.0 * static_cast<double>(all.size()));
+    const double significance = 1e-3 / (2.0 * static_cast<double>(all.size()));
     std::uint64_t seed = 0;
     for (const Case& c : all) {
-        for (const double degrees : {0.0, 50.0, 85.0}) {
+        for (const double degrees : {20.0, 75.0}) {
             const Vec3d out = at_angle(degrees);
             const Bsdf bsdf(up, up, c.lobe);
             const ChiSquared test = chi_squared(
@@ -264,13 +264,15 @@ TEST(Bsdf, WhiteFurnace) {
 }
 
 // Reflectances at normal incidence as published for rendering (Hoffman 2010, "Background: physics
-// and math of shading"), which come from other averages over the same spectra; gold's red lies beyond Rec.709.
+// and math of shading"), which come from other averages over the same spectra; gold's red lies
+// beyond Rec.709.
 TEST(Metal, ReflectancesAreThePublishedOnes) {
     const auto expect = [](Metal metal, const Vec3d& published) {
         const MetalIndex index = metal_index(metal);
         const ConductorLobe lobe{index.eta, index.k, false, 0, nullptr};
         const Vec3d f(lobe.fresnel(1));
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(f[c], std::min(1.0, published[c]), 0.04) << int(metal) << c;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(f[c], std::min(1.0, published[c]), 0.04) << int(metal) << c;
     };
     expect(Metal::Gold, {1.022, 0.782, 0.344});
     expect(Metal::Copper, {0.955, 0.638, 0.538});

@@ -167,7 +167,7 @@ TEST(SurfaceLight, SamplersHaveTheirDensity) {
                         light.sample(from, {random_uniform(key, 0), random_uniform(key, 1)});
                     return s.pdf > 0 ? std::optional(s.direction) : std::nullopt;
                 },
-                [&](const Vec3d& d) { return static_cast<double>(light.pdf(from, d)); }, ++seed);
+                [&](const Vec3d& d) { return static_cast<double>(light.pdf(from, d)); }, ++seed, 7);
             EXPECT_GT(test.p_value, 1e-3 / 8)
                 << surface.index() << ": " << test.statistic << " / " << test.freedom;
         }
@@ -243,6 +243,7 @@ TEST(SurfaceLight, LampsOfTheSceneAreSurfaces) {
     ASSERT_EQ(set.size(), 1);
     EXPECT_EQ(rig.at(1, 0, {}).size(), 2);
     EXPECT_TRUE(set.info(0).is_lamp);
+    EXPECT_EQ(set.light_of(0), 0);
     EXPECT_EQ(set.info(0).name, "panel");
     EXPECT_NEAR(set.lights()[0]->power(), 12, 1e-4);
     const Ray ray{{0.5, 0.5, 0}, up};
@@ -259,6 +260,7 @@ TEST(SurfaceLight, MovingLightsAreOnlyFound) {
     s.material.emission = Keyed<Vec3d>(Vec3d(1));
     const SurfaceSet set({s}, 0.5, up, 1);
     EXPECT_TRUE(set.lights().empty());
+    EXPECT_EQ(set.light_of(0), -1);
     EXPECT_TRUE(set.intersect({{0, 0, 0}, up}, 0));
     EXPECT_FALSE(set.intersect({{0, 0, 0}, up}, 1));
     EXPECT_TRUE(set.intersect({{4, 0, 0}, up}, 1));

@@ -45,10 +45,11 @@ inline double chi_squared_tail(double statistic, int freedom) {
 
 // `draw(key)` gives a direction or nothing; `density` in 1/sr. Bins are even in cosine and azimuth
 // (20 x 40 over the sphere); the density is integrated over each, finer where there is much of it;
-// bins of less than 5 expected samples are pooled.
+// bins of less than 5 expected samples are pooled. `depth`: how often a bin is halved at most, 6
+// where the density jumps.
 inline ChiSquared chi_squared(const std::function<std::optional<Vec3d>(std::uint64_t)>& draw,
                               const std::function<double(const Vec3d&)>& density,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, int depth = 10) {
     constexpr int rows = 20, columns = 40, samples = 60000;
     std::vector<double> seen(rows * columns, 0), expected(rows * columns, 0);
     double lost = 0;
@@ -78,8 +79,8 @@ inline ChiSquared chi_squared(const std::function<std::optional<Vec3d>(std::uint
         const double z = 0.5 * (z0 + z1), t = 0.5 * (t0 + t1);
         const double a = patch(z0, z, t0, t), b = patch(z, z1, t0, t), c = patch(z0, z, t, t1),
                      d = patch(z, z1, t, t1);
-        if (level >= 3 && std::abs(a + b + c + d - whole) < 4e-6) return a + b + c + d;
-        if (level >= 10) return a + b + c + d;
+        if (level >= 3 && std::abs(a + b + c + d - whole) < 1e-6) return a + b + c + d;
+        if (level >= depth) return a + b + c + d;
         return integrate(z0, z, t0, t, a, level + 1) + integrate(z, z1, t0, t, b, level + 1) +
                integrate(z0, z, t, t1, c, level + 1) + integrate(z, z1, t, t1, d, level + 1);
     };
