@@ -82,7 +82,7 @@ TEST_F(Bare, TheExposureLeavesColourInTheFire) {
         request.overrides = {"medium.emission_scale=" + std::to_string(bright), "film.width=64",
                              "film.height=48"};
         const LoadedScene s = load_bare(request, job_);
-        World world(s.scene);
+        World world(s.scene, job_);
         const View view = world.view({std::make_shared<const Frame>(std::move(frame))}, 1, job_);
         RenderSettings settings;
         settings.samples_per_pixel = 1;

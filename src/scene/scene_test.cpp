@@ -88,7 +88,7 @@ TEST(Scene, HoldsMediaWithoutAFluid) {
     EXPECT_EQ(fog.medium.albedo.at(0), Vec3d(0.99));
     EXPECT_EQ(std::get<PlanetAir>(s.scene.media[1]).turbidity, 3);
     Job job;
-    const View view = World(s.scene).view({}, 1, job);
+    const View view = World(s.scene, job).view({}, 1, job);
     EXPECT_EQ(view.media.size(), 4u);  // the air is three
     // Without a section the word is the fluid's; with neither it is nobody's.
     EXPECT_EQ(common_of(load_scene("plume", "", {"medium.g=0.25"}).scene.fluids[0]).medium.g.at(0),

@@ -37,7 +37,7 @@ std::vector<float> seen(const Scene& scene, const std::string& name) {
     frame->fields["vorticity"] = constant_field({1, 2, 3});
     frame->fields["Cd"] = constant_field({1, 2, 3});
     Job job;
-    const View view = World(scene).view({frame}, 1, job);
+    const View view = World(scene, job).view({frame}, 1, job);
     std::vector<float> out;
     const Field& f = *view.frames.at(0)->find(name);
     for (std::size_t c = 0; c < f.component.size(); ++c) {
