@@ -36,7 +36,12 @@ float density_integral(const Medium& medium, const Ray& ray, const DepthSteps& s
     const double step_t = steps.step * cell / per_t;
     const float strength = medium.strength();
     if (strength == 0) return 0;
-    const double enough = static_cast<double>(steps.enough) / static_cast<double>(strength);
+    float weakest = strength;
+    const Vec3f extinction = medium.cross_sections().extinction();
+    for (int c = 0; c < 3; ++c) {
+        if (extinction[c] > 0) weakest = std::min(weakest, extinction[c]);
+    }
+    const double enough = static_cast<double>(steps.enough) / static_cast<double>(weakest);
     SegmentWalk walk = medium.segments(ray, BrickGrain::Bricks);
     MediumSegment s;
     double sum = 0;

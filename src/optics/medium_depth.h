@@ -12,7 +12,7 @@ namespace gischt {
 struct DepthSteps {
     // Largest step in cells of the medium. The midpoint rule's error falls with its square.
     double step = 1;
-    // Stops once the depth of the strongest channel exceeds this: exp(-16) = 1e-7.
+    // Stops once the depth of the weakest channel that is not clear exceeds this: exp(-16) = 1e-7.
     float enough = 16;
 };
 

@@ -81,6 +81,7 @@ void PathTracer::from_glow(const Scatterer& at, const Leg& leg, RandomStream& ra
     if (max_component(value) <= 0) return;
     Ray ray = at.leave(direction, std::numeric_limits<double>::infinity());
     if (const auto hit = intersect(ray)) ray.t_max = hit->t;
+    if (distance > ray.t_max) return;  // behind a surface, where direction_pdf() does not count it
     const float pdf = scene_.glow.direction_pdf(ray);
     if (!(pdf > 0)) return;
     Vec3f glow;

@@ -96,6 +96,10 @@ class PathTracer {
         ++rays_;
         return scene_.view.surfaces.intersect(ray, moment_, kind);
     }
+    // The camera's own view, in which some surfaces do not appear.
+    static RayKind kind_of(const Leg& leg) {
+        return leg.events == 0 && leg.mirrors == 0 ? RayKind::Camera : RayKind::Other;
+    }
     // Passes a boundary; `inside_` decides which media the tracker sees.
     void cross(const SurfaceHit& hit);
     void take_media();

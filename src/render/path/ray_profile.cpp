@@ -36,6 +36,7 @@ void RayProfile::trace(std::span<const Medium* const> media, const Ray& ray, boo
                        std::int64_t& lookups) {
     constexpr float enough = 24;
     is_grey_ = is_grey;
+    channels_ = 0;
     depth_ = {};
     runs_.clear();
     active_.clear();
@@ -45,6 +46,9 @@ void RayProfile::trace(std::span<const Medium* const> media, const Ray& ray, boo
     while (walk.next(run)) {
         add_run(run, lookups);
         if (min_component(depth_) > enough) break;
+    }
+    for (int c = 0; c < (is_grey ? 1 : 3); ++c) {
+        if (depth_[c] > 0) channel_[static_cast<std::size_t>(channels_++)] = c;
     }
 }
 
@@ -107,18 +111,15 @@ void RayProfile::add_run(const MediaRun& run, std::int64_t& lookups) {
     }
 }
 
-// Mean over the channels of the density with which points() draws places, at s from the beginning
-// of a piece.
+// The density with which points() draws places, at s from the beginning of a piece: the mean over
+// the channels that have an extinction.
 float RayProfile::density_in(const Piece& p, float s) const {
-    if (is_grey_) {
-        return p.extinction.x * fast_exp(-p.depth.x - s * p.extinction.x) / opacity(depth_.x);
-    }
     float sum = 0;
-    for (int c = 0; c < 3; ++c) {
-        if (depth_[c] == 0) continue;
+    for (int i = 0; i < channels_; ++i) {
+        const int c = channel_[static_cast<std::size_t>(i)];
         sum += p.extinction[c] * fast_exp(-p.depth[c] - s * p.extinction[c]) / opacity(depth_[c]);
     }
-    return sum / 3;
+    return channels_ > 1 ? sum / static_cast<float>(channels_) : sum;
 }
 
 const RayProfile::Piece* RayProfile::find(double t) const {
@@ -179,13 +180,14 @@ ProfilePoint RayProfile::make_point(const Piece& piece, double t, float pdf, flo
 
 void RayProfile::points(int n, float u, float choose, std::vector<ProfilePoint>& out,
                         std::int64_t& lookups) const {
-    if (pieces_.empty() || max_component(depth_) == 0) return;
-    // Each channel takes its own inverse; the points cycle through the channels.
+    if (channels_ == 0) return;
+    // Each channel takes its own inverse; the points cycle through the channels, from one that
+    // `choose` picks on. What is left of it is uniform again.
+    choose *= static_cast<float>(channels_);
+    const int first = std::min(static_cast<int>(choose), channels_ - 1);
+    choose -= static_cast<float>(first);
     for (int i = 0; i < n; ++i) {
-        int c = is_grey_
-                    ? 0
-                    : static_cast<int>(std::fmin(3 * choose, 2.0f) + static_cast<float>(i)) % 3;
-        while (depth_[c] == 0) c = (c + 1) % 3;
+        const int c = channel_[static_cast<std::size_t>((first + i) % channels_)];
         const float place = (static_cast<float>(i) + u) / static_cast<float>(n);
         const float depth = -fast_log(1 - place * opacity(depth_[c]));
         auto piece = std::upper_bound(pieces_.begin(), pieces_.end(), depth,

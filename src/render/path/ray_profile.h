@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -29,9 +30,10 @@ class RayProfile {
     // Optical depth per channel of all of it.
     const Vec3f& depth() const { return depth_; }
 
-    // Appends n points with a density in proportion to the mean over the channels of transmittance
-    // times extinction (constant extinction taken in each piece), at the stratified places
-    // (i + u) / n. The sum over the points of weight * f estimates the integral of transmittance
+    // Appends n points with a density in proportion to the mean over the channels that have an
+    // extinction of transmittance times extinction (constant extinction taken in each piece), at
+    // the stratified places (i + u) / n. The sum over the points of weight * f estimates the
+    // integral of transmittance
     // * scattering * f. `choose` in [0, 1) picks among overlapping media.
     void points(int n, float u, float choose, std::vector<ProfilePoint>& out,
                 std::int64_t& lookups) const;
@@ -67,6 +69,8 @@ class RayProfile {
 
     bool is_grey_ = true;
     Vec3f depth_;
+    std::array<int, 3> channel_{};  // those with an extinction; in grey media one for all
+    int channels_ = 0;              // their number
     std::vector<Run> runs_;
     std::vector<ActiveMedium> active_;
     std::vector<Piece> pieces_;

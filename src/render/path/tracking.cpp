@@ -79,8 +79,9 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
         }
     }
     if (is_real) return true;
-    const Vec3f null = Vec3f(1) - total / Vec3f(majorant);
-    const Vec3f ratio = max(null, Vec3f(0)) / Vec3f(null[hero]);
+    const Vec3f null = max(Vec3f(1) - total / Vec3f(majorant), Vec3f(0));
+    if (null[hero] == 0) return false;  // but for rounding it cannot be
+    const Vec3f ratio = null / Vec3f(null[hero]);
     weight.weight = weight.weight * ratio;
     weight.rate = weight.rate * ratio;
     return false;
@@ -182,6 +183,16 @@ Vec3f Tracker::ratio_tracking(std::span<const Medium* const> tracked, const Ray&
                            fast_exp(-control_depth.z));
 }
 
+// Of the channels that are not clear, at density 1, 1/m.
+static float weakest_extinction(const Medium& medium) {
+    const Vec3f extinction = medium.cross_sections().extinction();
+    float weakest = medium.strength();
+    for (int c = 0; c < 3; ++c) {
+        if (extinction[c] > 0) weakest = std::min(weakest, extinction[c]);
+    }
+    return weakest;
+}
+
 // Integral of the density over [t0, t1] of a segment, in t.
 static double exact_integral(const Medium& medium, const MediumSegment& segment,
                              std::int64_t& lookups) {
@@ -218,7 +229,7 @@ double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t
         const auto sum = static_cast<double>(*depth / medium.strength());
         return std::min(sum / length(ray.direction), 1e30);
     }
-    const double enough = 24.0 / static_cast<double>(medium.strength());
+    const double enough = 24.0 / static_cast<double>(weakest_extinction(medium));
     double sum = 0;
     SegmentWalk walk = medium.segments(ray, BrickGrain::Bricks);
     MediumSegment s;

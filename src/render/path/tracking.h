@@ -59,7 +59,7 @@ Vec3f extinction_at(const MediaRun& run, double t);
 
 // Integral of the density of one medium along a ray of unit direction, metres: without error but
 // rounding. Two Gauss points in each interpolation cell, in which the density is a cubic of t.
-// Stops at an optical depth of 24 of the strongest channel: exp(-24) = 4e-11.
+// Stops at an optical depth of 24 of the weakest channel that is not clear: exp(-24) = 4e-11.
 double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t& lookups);
 
 }  // namespace gischt

@@ -33,7 +33,7 @@ void PathTracer::follow(Leg leg, RandomStream& random) {
 PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& collision,
                                 std::optional<SurfaceHit>& hit) {
     for (int i = 0; i < most_boundaries; ++i) {
-        hit = intersect(leg.ray);
+        hit = intersect(leg.ray, kind_of(leg));
         if (hit) leg.ray.t_max = hit->t;
         if (!tracker_.media.empty()) {
             Vec3f glow;
@@ -60,7 +60,7 @@ float PathTracer::glow_share(const Leg& leg) const {
 // The same, the media dimming the light by their transmittance.
 PathTracer::End PathTracer::look(Leg& leg, RandomStream& random, std::optional<SurfaceHit>& hit) {
     for (int i = 0; i < most_boundaries; ++i) {
-        hit = intersect(leg.ray);
+        hit = intersect(leg.ray, kind_of(leg));
         if (hit) leg.ray.t_max = hit->t;
         const bool is_dark = !hit && scene_.even.empty() && scene_.broad.empty() && leg.pdf > 0;
         if (!tracker_.media.empty() && !is_dark) {
