@@ -142,6 +142,21 @@ class Work(CliCase):
         # Another simulation may not mix with it.
         self.run_gischt("run", "plume", *SMALL, "--set", "seed=5", "--frames", "1-3", "-o", "p", status=2)
 
+    def test_a_preview_is_coarse_and_keeps_to_itself(self):
+        flags = ["--set", "domain.resolution=40", "--size", "48x32", "--frames", "1-2"]
+        self.run_gischt("run", "plume", *flags, "--spp", 1, "-o", "p")
+        final = {name: (self.dir / name).read_bytes() for name in self.files()}
+        for command in (["run", "plume", "-o", "p"], ["sim", "plume", "-o", "p"], ["render", "plume", "--cache", "p", "-o", "x.png"]):
+            self.run_gischt(*command, "--preview", *flags[:2], *(flags[2:] if command[0] != "sim" else flags[4:]))
+        for name, content in final.items():
+            self.assertEqual((self.dir / name).read_bytes(), content, name)
+        self.assertIn("p/preview/plume.mp4", self.files())
+        cells = [self.run_gischt("info", f"{folder}/smoke_0001.vdb").stdout for folder in ("p", "p/preview")]
+        self.assertIn("0.1 m", cells[0])
+        self.assertIn("0.2 m", cells[1])
+        # The folder of the final frames is still what it says.
+        self.run_gischt("render", "p", "--preview", "-o", "y.png", *flags[2:4])
+
     def test_threads_give_the_same_bytes(self):
         for threads in (1, 2):
             self.run_gischt("run", "plume", *SMALL, "--frames", "1-4", "-o", f"t{threads}", "--threads", threads)
@@ -181,6 +196,26 @@ class Work(CliCase):
         self.run_gischt("render", "cloud", "--set", "fluid.resolution=24", "--size", "32x20", "--spp", 1, "-o", "a.exr")
         self.run_gischt("sim", "plume", "--set", "domain.resolution=32", "--frames", "1-8", "-o", "c")
         self.run_gischt("render", "cloud", "--set", "fluid.file=c/smoke_0008.vdb", "--size", "32x20", "--spp", 1, "-o", "b.exr")
+
+    def picture_of_small_cloud(self, *flags):
+        self.run_gischt("render", "cloud", "--set", "fluid.resolution=32", "-o", "x.exr", "--stats", "s.json", *flags)
+        return json.loads((self.dir / "s.json").read_text())["images"][0]
+
+    def test_time_limit(self):
+        # The light's grids and a first sample of every pixel are always made: how long they take depends on the machine.
+        first = self.picture_of_small_cloud("--size", "480x270", "--spp", 1)["wall_seconds"]
+        picture = self.picture_of_small_cloud("--size", "480x270", "--spp", 100000, "--time", "3s")
+        self.assertGreater(picture["wall_seconds"], 3)
+        self.assertLess(picture["wall_seconds"], 3 + 2 * first + 1)
+        self.assertGreater(picture["samples_per_pixel"], 1)
+        self.assertLess(picture["samples_per_pixel"], 100000)
+
+    def test_noise_limit(self):
+        rough, fine = (self.picture_of_small_cloud("--size", "96x64", "--spp", 4096, "--noise", noise) for noise in (0.05, 0.01))
+        self.assertLessEqual(rough["noise"], 0.05)
+        self.assertLessEqual(fine["noise"], 0.01)
+        self.assertLess(rough["samples_per_pixel"], fine["samples_per_pixel"])
+        self.assertLess(fine["samples_per_pixel"], 4096)
 
     def test_field_pictures(self):
         self.run_gischt("render", "smoke-2d", "--set", "domain.resolution=48", "--frames", "4", "-o", "f.png")

@@ -12,9 +12,9 @@ static int run_scene(const SceneOptions& options, CommandContext& context) {
     const Console console(context);
     const double start = now_seconds();
     ResolvedOptions r = resolve(options, context);
-    const std::filesystem::path folder = options.outputs.empty()
-                                             ? std::filesystem::path("out") / r.scene.name
-                                             : std::filesystem::path(options.outputs.front());
+    const std::filesystem::path folder = work_folder(
+        options, options.outputs.empty() ? std::filesystem::path("out") / r.scene.name
+                                         : std::filesystem::path(options.outputs.front()));
     r.order.cache = folder;
     r.order.outputs = {(folder / (r.scene.name + ".png")).string()};
     if (r.order.frames.count() > 1)
@@ -50,8 +50,9 @@ static int simulate_scene(const SceneOptions& options, CommandContext& context) 
     const Console console(context);
     const double start = now_seconds();
     ResolvedOptions r = resolve(options, context);
-    r.order.cache = options.outputs.empty() ? std::filesystem::path("out") / r.scene.name
-                                            : std::filesystem::path(options.outputs.front());
+    r.order.cache = work_folder(options, options.outputs.empty()
+                                             ? std::filesystem::path("out") / r.scene.name
+                                             : std::filesystem::path(options.outputs.front()));
     RunStatistics statistics{
         .command = context.command_line, .scene_hash = r.scene.hash, .frames = {}, .images = {}};
     simulate(r.scene, r.order, statistics, context.job);

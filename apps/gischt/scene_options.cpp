@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "scene/bare.h"
 #include "scene/preset.h"
+#include "scene/preview.h"
 
 namespace gischt {
 namespace fs = std::filesystem;
@@ -118,10 +119,20 @@ ResolvedOptions resolve(const SceneOptions& options, CommandContext& context) {
         r.is_cache = true;
     } else {
         r.scene = load_scene(options.target, options.preset, sets);
+        if (options.preview) {
+            std::vector<std::string> coarse = sets;
+            for (std::string& set : preview_overrides(r.scene.scene)) coarse.push_back(set);
+            r.scene = load_scene(options.target, options.preset, coarse);
+        }
+        if (r.order.cache) r.order.cache = work_folder(options, *r.order.cache);
     }
     if (options.frames.empty())
         r.order.frames = {r.scene.scene.frames.x, r.scene.scene.frames.y, 1};
     return r;
+}
+
+fs::path work_folder(const SceneOptions& options, const fs::path& folder) {
+    return options.preview ? folder / "preview" : folder;
 }
 
 std::string picture_path(const std::string& output, const std::string& name) {
@@ -146,8 +157,9 @@ void add_scene_flags(CLI::App& app, SceneOptions& o, bool pictures) {
     app.add_flag("--restart", o.restart, "Throw away cached frames and films and start anew");
     app.add_flag("--resume", o.resume,
                  "Use cached frames and films and go on where they stop (the default)");
-    app.add_flag("--preview", o.preview,
-                 "The fastest method that shows the motion; coarser numbers, the same scene");
+    app.add_flag(
+        "--preview", o.preview,
+        "Half the cells along each edge, one sample per pixel; in a folder 'preview' of its own");
     if (!pictures) return;
     app.add_option("--method", o.method, "Render method, see `gischt methods`");
     app.add_option("--size", o.size, "Size of the picture in pixels")->type_name("WxH");

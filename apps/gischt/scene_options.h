@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct ResolvedOptions {
     bool is_cache = false;  // the target is a cache folder: order.cache
 };
 ResolvedOptions resolve(const SceneOptions& options, CommandContext& context);
+
+// Where frames go that would go to `folder`: a preview works beside the final frames.
+std::filesystem::path work_folder(const SceneOptions& options, const std::filesystem::path& folder);
 
 // The folder or pattern that `-o` means for pictures: "DIR" and "DIR/" become DIR/NAME.png.
 std::string picture_path(const std::string& output, const std::string& name);

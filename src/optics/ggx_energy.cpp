@@ -7,15 +7,14 @@
 #include "base/parallel.h"
 #include "math/quadrature.h"
 #include "math/sobol.h"
-#include "optics/bsdf_lobes.h"
 #include "optics/fresnel.h"
 #include "optics/ggx.h"
 
 namespace gischt {
 namespace {
 
-constexpr int cosines = 48, indices = 65;  // indices: odd, so that eta = 1 is a node
-constexpr int samples = 1024;
+constexpr int cosines = 48, indices = 33;  // indices: odd, so that eta = 1 is a node
+constexpr int samples = 512;
 const double log_eta_max = std::log(4.0);
 
 // The scattering angles at grazing incidence need the finer steps.
@@ -55,16 +54,18 @@ double reflected_energy(double alpha, double eta, double cosine) {
 }
 
 double passed_energy(double alpha, double eta, double cosine) {
-    DielectricLobe lobe;
-    lobe.eta = eta;
-    lobe.alpha = alpha;
+    const Ggx ggx{alpha};
     const Vec3d out = towards(cosine);
     double sum = 0;
     for (int s = 0; s < samples; ++s) {
-        const auto i = static_cast<std::uint32_t>(s);
-        if (const auto sample = lobe.sample(out, sobol_2d(i, 12), sobol_1d(i, 13))) {
-            sum += static_cast<double>(sample->weight.x);
-        }
+        const Vec3d h = ggx.sample(out, sobol_2d(static_cast<std::uint32_t>(s), 11));
+        const double c = dot(out, h);
+        if (c <= 0) continue;
+        const double f = fresnel_dielectric(c, eta);
+        const Vec3d mirrored = 2 * c * h - out;
+        if (mirrored.z > 0) sum += f * ggx.masking(out, mirrored) / ggx.masking(out);
+        const auto bent = refracted(out, h, eta);
+        if (bent && bent->z < 0) sum += (1 - f) * ggx.masking(*bent);
     }
     return sum / samples;
 }

@@ -14,9 +14,9 @@ MetalIndex metal_index(Metal metal) {
         case Metal::Silver:
             return {{0.1552f, 0.1167f, 0.1383f}, {4.8283f, 3.1222f, 2.1470f}};
         case Metal::Iron:
-            return {{2.9114f, 2.9497f, 2.5845f}, {3.0893f, 2.9318f, 2.7670f}};
+            return {{2.9114f, 2.9497f, 2.5845f}, {3.3599f, 3.3946f, 3.4131f}};
         case Metal::Chrome:
-            return {{4.3696f, 2.9167f, 1.6547f}, {5.2064f, 4.2313f, 3.7549f}};
+            return {{3.1800f, 3.1800f, 3.1800f}, {3.2759f, 3.3431f, 3.3238f}};
     }
     return {};
 }

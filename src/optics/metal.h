@@ -11,8 +11,10 @@ struct MetalIndex {
     Vec3f eta, k;
 };
 
-// From the measurements of Johnson & Christy (1972: gold, copper, silver; 1974: iron), Rakic (1998:
-// aluminium) and Rakic et al. (1998: chrome), averaged over each primary.
+// From the measurements of Johnson & Christy (1972) for gold, copper and silver and of Rakic (1995)
+// for aluminium, averaged over each primary. Iron and chrome have eta by Johnson & Christy (1974)
+// and the k that gives the reflectance at normal incidence of Hoffman (2010), as Gulbrandsen (2014,
+// "Artist friendly metallic Fresnel") computes it.
 MetalIndex metal_index(Metal metal);
 
 }  // namespace gischt

@@ -109,6 +109,10 @@ const SurfaceInfo& SurfaceSet::info(int surface) const {
     return content_->surfaces[static_cast<std::size_t>(surface)].info;
 }
 
+int SurfaceSet::light_of(int surface) const {
+    return content_->surfaces[static_cast<std::size_t>(surface)].light;
+}
+
 bool SurfaceSet::is_interior(const Medium* medium) const {
     if (!content_ || !medium) return false;
     return std::any_of(content_->surfaces.begin(), content_->surfaces.end(),

@@ -92,6 +92,8 @@ class SurfaceSet {
     // The finite surfaces that glow, as lights to sample. Those that move while the film is exposed
     // are not among them: light paths can only find them.
     const std::vector<std::shared_ptr<const SurfaceLight>>& lights() const;
+    // The one that a surface is, as its place among lights(); -1 for none.
+    int light_of(int surface) const;
 
     // Box around the finite surfaces, empty when there are none.
     Box3d bounds() const;

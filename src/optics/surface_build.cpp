@@ -324,6 +324,10 @@ void finish(SurfaceSet::Content& content, const EmbreeScene* meshes) {
     }
     content.meshes = meshes ? *meshes : EmbreeScene(std::move(objects));
     content.lights = make_surface_lights(content);
+    for (std::size_t i = 0; i < content.lights.size(); ++i) {
+        const auto surface = static_cast<std::size_t>(content.lights[i]->surface());
+        content.surfaces[surface].light = static_cast<int>(i);
+    }
 }
 
 }  // namespace gischt

@@ -33,6 +33,7 @@ struct SurfaceEntry {
     Shape shape;                             // at the middle of the shutter; not for a mesh
     std::shared_ptr<const PlacedMesh> mesh;  // null for analytic shapes
     int object = -1;                         // of a mesh in the search tree
+    int light = -1;                          // among the lights
     bool is_stopping = true;                 // blocks light: all but material None
     Transform to_board;  // a point into the frame of checker board and coordinates
 

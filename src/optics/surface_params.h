@@ -64,6 +64,7 @@ struct MeshSurface {
 using SurfaceParams =
     std::variant<SphereSurface, BoxSurface, GroundSurface, RectSurface, DiscSurface, MeshSurface>;
 
+const Table<Material>& material_table();
 const Variants<SurfaceParams>& surface_variants();
 
 }  // namespace gischt

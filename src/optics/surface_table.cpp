@@ -35,6 +35,8 @@ void check_material(const Material& m, const Fail& fail) {
     if (m.holdout && m.shadow_catcher) fail("holdout", "cannot be a shadow catcher too");
 }
 
+}  // namespace
+
 const Table<Material>& material_table() {
     static const Table<Material> table =
         Table<Material>("material", "What a surface does to light")
@@ -106,6 +108,8 @@ const Table<Material>& material_table() {
             .check(check_material);
     return table;
 }
+
+namespace {
 
 const Table<SphereSurface>& sphere_table() {
     static const Table<SphereSurface> table =
@@ -184,7 +188,7 @@ const Table<MeshSurface>& mesh_table() {
         Table<MeshSurface>("mesh", "Triangles from a file; fluids do not meet them")
             .add("name", &MeshSurface::name, {.help = "For messages and --set"})
             .add("file", &MeshSurface::file,
-                 {.help = "OBJ, PLY, STL, glTF or GLB", .required = true})
+                 {.help = "OBJ, PLY, or glTF 2 as .gltf or .glb", .required = true})
             .choice("up", &MeshSurface::up, {{"y", FileUp::Y}, {"z", FileUp::Z}},
                     {.help = "The axis that points up in the file; it is turned to the scene's"})
             .add("translate", &MeshSurface::translate, {.unit = "m", .help = "Moves it, at last"})

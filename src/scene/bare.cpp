@@ -46,6 +46,42 @@ bool is_burning(const Frame& frame) {
     return flame && flame->map().size() > 0 && largest_value(*flame) > 0.01f;
 }
 
+// How the values of a file become fire: the field that glows, and its values at the cold and the
+// hot end of a flame's colours.
+struct Burning {
+    std::string field;
+    double cold = 0, hot = 1;
+    bool is_true = false;  // kelvin of something that hot: nothing is to be mapped
+};
+
+Burning find_burning(const Frame& frame, const std::string& density) {
+    if (is_burning(frame)) {
+        return {"flame", 0, static_cast<double>(largest_value(*frame.find("flame")))};
+    }
+    const Field* heat = frame.find("temperature");
+    if (heat && !heat->is_vector() && heat->map().size() > 0 && largest_value(*heat) > 0) {
+        const auto hot = static_cast<double>(largest_value(*heat));
+        const auto unit = frame.metadata.find("temperature_unit");
+        const bool is_relative = unit != frame.metadata.end() && unit->second == "relative";
+        if (is_relative) return {"temperature", 0, hot};
+        constexpr double least_glow = 900;  // K: a dull red
+        if (hot > least_glow) return {"temperature", 0, 1, true};
+        if (hot > ambient_temperature) return {"temperature", ambient_temperature, hot};
+    }
+    return {density, 0, static_cast<double>(largest_value(*frame.find(density)))};
+}
+
+// The keys of a medium that burns so: a flame's soot is black at 800 K and yellow at 1900 K. Air
+// that is warm at best counts from 500 K, where nothing glows.
+std::vector<std::string> fire_keys(const Burning& b) {
+    if (b.is_true) return {"medium.emission=blackbody"};
+    const double coldest = b.cold > 0 ? 500 : 800, hottest = 1900;
+    const double per_value = (hottest - coldest) / (b.hot - b.cold);
+    const double zero = coldest - per_value * b.cold;
+    return {fmt::format("medium.emission_field='{}'", b.field),
+            fmt::format("medium.temperature_range=[{},{}]", zero, zero + per_value)};
+}
+
 // What the file says, as gischt's and Blender's do, else y: the habit of most other programs.
 std::string up_of(const Frame& frame) {
     const auto up = frame.metadata.find("up");
@@ -91,13 +127,16 @@ double choose_exposure(const Scene& scene, const World& world, const View& view,
         make_method("march", scene.render.methods)->render(small, settings, job).image;
     const auto [r, g, b] = image.color();
     const auto alpha = image.channel("A");
-    std::vector<double> seen;
+    // The mean of the luminance, each pixel weighed by its own: that of the parts that shine.
+    double sum = 0, squares = 0;
     for (std::size_t i = 0; i < r.size(); ++i) {
-        if (alpha[i] > 0.02f) seen.push_back(luminance(Vec3f(r[i], g[i], b[i])));
+        if (alpha[i] <= 0.02f) continue;
+        const auto y = static_cast<double>(luminance(Vec3f(r[i], g[i], b[i])));
+        sum += y;
+        squares += y * y;
     }
-    const double bright = percentile(std::move(seen), 0.97);
-    constexpr double wanted = 1.6;  // of the filmic curve's 16
-    return bright > 0 ? std::clamp(std::log2(wanted / bright), -20.0, 20.0) : 0;
+    constexpr double wanted = 0.9;  // of the filmic curve's 16: light, with colour left
+    return sum > 0 ? std::clamp(std::log2(wanted * sum / squares), -20.0, 20.0) : 0;
 }
 
 // By day for what scatters, at dusk for what glows.
@@ -107,7 +146,7 @@ std::string lights_for(const std::string& preset) {
 [[light]]
 name = "moon"
 type = "sun"
-irradiance = 0.5
+irradiance = 1.2
 color = [0.8, 0.95, 1.3]
 [[light]]
 name = "dusk"
@@ -155,30 +194,35 @@ LoadedScene load_bare(const BareRequest& request, Job& job) {
     tree.find("fluid")->set("file", Value(std::filesystem::absolute(request.file).string()));
     const std::string name = std::filesystem::path(request.file).stem().string();
 
+    std::vector<std::string> overrides;
+    if (preset == "fire") overrides = fire_keys(find_burning(*frame, density));
     // An extinction of 1/m is the yardstick for the one that suits the size of things.
-    const LoadedScene yardstick = load_scene_tree(name, tree, preset, {});
-    const View view = World(yardstick.scene).view({frame}, request.frame, job);
+    const LoadedScene yardstick = load_scene_tree(name, tree, preset, overrides);
+    const View view = World(yardstick.scene, job).view({frame}, request.frame, job);
     const double depth = optical_depth_percentile(view);
     if (!(depth > 0))
         throw Error(ErrorKind::Input, request.file,
                     "there is nothing to see: the density is zero everywhere");
-    tree.find("fluid")->find("medium")->set("extinction", Value(8 / depth));
+    // Soot hides its own flames, and so gives them a shape.
+    const double extinction = (preset == "fire" ? 12 : 8) / depth;
+    tree.find("fluid")->find("medium")->set("extinction", Value(extinction));
 
-    LoadedScene loaded = load_scene_tree(name, tree, preset, request.overrides);
+    overrides.insert(overrides.end(), request.overrides.begin(), request.overrides.end());
+    LoadedScene loaded = load_scene_tree(name, tree, preset, overrides);
     if (!request.exposure_given && view.media[0]->is_emissive()) {
-        World world(loaded.scene);
+        World world(loaded.scene, job);
         const double exposure =
             choose_exposure(loaded.scene, world, world.view({frame}, request.frame, job), job);
         tree.set("film", Value()).set("exposure", Value(exposure));
         for (Value& light : tree.find("light")->array()) scale_light(light, std::exp2(-exposure));
-        loaded = load_scene_tree(name, tree, preset, request.overrides);
+        loaded = load_scene_tree(name, tree, preset, overrides);
     }
     const Vec3d size = view.media[0]->bounds().size();
     job.info(fmt::format(
         "assumed: {} up, {:.4g} x {:.4g} x {:.4g} m, field '{}', extinction {:.4g}/m at density 1, "
         "look '{}', "
         "exposure {:.2f}; each can be set",
-        up, size.x, size.y, size.z, density, 8 / depth, preset, loaded.scene.film.exposure));
+        up, size.x, size.y, size.z, density, extinction, preset, loaded.scene.film.exposure));
     return loaded;
 }
 

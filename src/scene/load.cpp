@@ -79,6 +79,19 @@ static void apply_overrides(Value& tree, const std::vector<std::string>& overrid
     }
 }
 
+// Takes away what a fluid or solid does to light, as far as the simulation does not know it.
+static void drop_looks(Value& element, bool is_solid) {
+    const auto is_look = [&](const Value::Member& m) {
+        return m.key == "medium" ||
+               (is_solid && m.key != "interior" && material_table().find(m.key));
+    };
+    const Value* material = element.find("material");
+    const bool is_no_obstacle =
+        is_solid && material && material->is_string() && material->string() == "none";
+    std::erase_if(element.members(), is_look);
+    if (is_no_obstacle) element.set("material", Value("none"));
+}
+
 // The parts of a scene that its simulation depends on.
 static std::string motion_text(const Value& whole) {
     std::string text;
@@ -88,10 +101,7 @@ static std::string motion_text(const Value& whole) {
         Value copy = *part;
         if (copy.is_array()) {
             for (Value& element : copy.array()) {
-                for (const char* unseen : {"medium", "material"}) {
-                    std::erase_if(element.members(),
-                                  [&](const Value::Member& m) { return m.key == unseen; });
-                }
+                drop_looks(element, std::string_view(key) == "solid");
             }
         }
         text += std::string(key) + to_inline_toml(copy);

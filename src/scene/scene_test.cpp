@@ -8,6 +8,7 @@
 #include "scene/builtin.h"
 #include "scene/load.h"
 #include "scene/preset.h"
+#include "scene/preview.h"
 #include "scene/world.h"
 #include "schema/toml.h"
 
@@ -136,6 +137,22 @@ TEST(Scene, MotionHashIgnoresWhatOnlyLightSees) {
     EXPECT_NE(load_scene("plume", "", {"domain.resolution=99"}).motion_hash, base);
     EXPECT_NE(load_scene("plume", "", {"solid.ball.radius=0.3"}).motion_hash, base);
     EXPECT_NE(load_scene("plume", "", {"fps=25"}).motion_hash, base);
+}
+
+TEST(Preview, HalvesWhatIsComputed) {
+    const auto sets_of = [](const char* name, const std::vector<std::string>& sets = {}) {
+        return preview_overrides(load_scene(name, "", sets).scene);
+    };
+    const auto first = [&](const char* name, const std::vector<std::string>& sets = {}) {
+        const LoadedScene s = load_scene(name, "", sets_of(name, sets));
+        return std::get<FluidOf<SmokeParams>>(s.scene.fluids[0]).source.domain.resolution;
+    };
+    EXPECT_EQ(first("plume"), 64);
+    EXPECT_EQ(first("plume", {"domain.resolution=20"}), 16);
+    EXPECT_TRUE(sets_of("plume", {"domain.resolution=9"}).empty());
+    EXPECT_TRUE(sets_of("plume", {"fluid.file=a.vdb"}).empty());
+    const LoadedScene cloud = load_scene("cloud", "", sets_of("cloud"));
+    EXPECT_EQ(std::get<FluidOf<CloudParams>>(cloud.scene.fluids[0]).source.resolution, 128);
 }
 
 TEST(Preset, EveryOneChangesTheLookAndNotTheMotion) {

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "fluid/smoke_source.h"
 #include "io/image_file.h"
+#include "io/mesh_file.h"
 #include "optics/medium.h"
 
 namespace gischt {
@@ -99,8 +100,13 @@ struct SolidOf {
     std::optional<SolidParams> operator()(const MeshSurface&) const { return std::nullopt; }
 };
 
-// What stands in the way of a simulated fluid; sheets have no inside that could.
-std::optional<SolidParams> solid_of(const SurfaceParams& s, const Vec3d& up) {
+// What stands in the way of a simulated fluid. Sheets have no inside that could, a boundary without
+// a surface is not there, and what a fluid fills does not keep it out.
+std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& fluid,
+                                    const Vec3d& up) {
+    const Material& m = std::visit([](const auto& p) -> const Material& { return p.material; }, s);
+    const bool is_filled = !m.interior.empty() && m.interior == fluid;
+    if (m.kind == MaterialKind::None || is_filled) return std::nullopt;
     return std::visit(SolidOf{up}, s);
 }
 
@@ -112,7 +118,9 @@ struct SourceOf {
         world.fps = scene.fps;
         world.gravity = scene.gravity_vector();
         for (const SurfaceParams& s : scene.solids) {
-            if (const auto solid = solid_of(s, scene.up_vector())) world.solids.push_back(*solid);
+            if (const auto solid = solid_of(s, f.common.name, scene.up_vector())) {
+                world.solids.push_back(*solid);
+            }
         }
         return std::make_unique<SmokeSource>(f.source, world);
     }
@@ -142,10 +150,22 @@ bool is_computed(const FluidSection& fluid) {
     return !std::holds_alternative<FluidOf<FileParams>>(fluid);
 }
 
-World::World(const Scene& scene)
-    : scene_(scene), lights_(scene.lights, scene.up_vector(), [](const std::string& file) {
-          return read_image(file);
-      }) {}
+void report_unmet_solids(const Scene& scene, const FluidSection& fluid, Job& job) {
+    if (!std::holds_alternative<FluidOf<SmokeParams>>(fluid)) return;
+    for (const SurfaceParams& s : scene.solids) {
+        const auto* mesh = std::get_if<MeshSurface>(&s);
+        if (!mesh || mesh->material.kind == MaterialKind::None) continue;
+        job.warn("solid '" + mesh->name + "' is a mesh: seen, but the smoke passes through it");
+    }
+}
+
+World::World(const Scene& scene, Job& job)
+    : scene_(scene),
+      lights_(scene.lights, scene.up_vector(), read_image),
+      surfaces_(
+          scene.solids, scene.lights, scene.up_vector(),
+          [](const std::string& file, Job& loading) { return read_mesh(file, loading).mesh; },
+          read_image, job) {}
 
 // Aims a camera that sees the whole box at what the media really show, and narrows its field to
 // that.
@@ -196,12 +216,38 @@ CameraParams World::camera(const View& view) const {
     return params;
 }
 
-// A fluid's frame where the scene puts it.
+// The vectors of a field under a linear map.
+static void map_vectors(Field& field, const Transform& map) {
+    auto &x = field.component[0], &y = field.component[1], &z = field.component[2];
+    for (std::size_t i = 0; i < x.values().size(); ++i) {
+        const Vec3d v = map.vector({x.values()[i], y.values()[i], z.values()[i]});
+        x.values()[i] = static_cast<float>(v.x);
+        y.values()[i] = static_cast<float>(v.y);
+        z.values()[i] = static_cast<float>(v.z);
+    }
+    const auto& b = field.background;
+    const Vec3f background(map.vector({b[0], b[1], b[2]}));
+    field.background = {background.x, background.y, background.z};
+}
+
+// A fluid's frame where the scene puts it: lengths grow with it, and what points somewhere turns.
+// Other vectors (colours, say) stay as they are.
 static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& frame,
                                            const Transform& placement) {
     if (placement == Transform{}) return frame;
     auto out = std::make_shared<Frame>(*frame);
-    for (auto& [name, field] : out->fields) field.to_world = placement * field.to_world;
+    const double scale = std::cbrt(placement.determinant());
+    Transform rotation = placement;
+    for (Vec3d& c : rotation.column) c = c / scale;
+    for (auto& [name, field] : out->fields) {
+        field.to_world = placement * field.to_world;
+        if (field.is_vector() && name == "velocity") map_vectors(field, placement);
+        if (field.is_vector() && name == "vorticity") map_vectors(field, rotation);
+        if (field.kind == FieldClass::LevelSet && !field.is_vector() && scale != 1) {
+            for (float& d : field.component[0].values()) d *= static_cast<float>(scale);
+            field.background[0] *= static_cast<float>(scale);
+        }
+    }
     return out;
 }
 
@@ -224,10 +270,16 @@ View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int fr
         }
     }
     view.lights = lights_.at(view.time);
-    view.surfaces = SurfaceSet(scene_.solids, view.time, scene_.up_vector());
     view.shutter = scene_.film.shutter / scene_.fps;
     view.camera = Camera(camera(view), view.time, scene_.film.width, scene_.film.height,
                          scene_.up_vector(), view.shutter);
+    // A colour map has frames and no media: nothing fills a surface then.
+    SurfaceRig::Media media;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const std::string& name = common_of(scene_.fluids[i]).name;
+        if (!name.empty()) media[name] = i < view.media.size() ? view.media[i] : nullptr;
+    }
+    view.surfaces = surfaces_.at(view.time, view.shutter, media);
     return view;
 }
 

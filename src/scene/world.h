@@ -6,6 +6,7 @@
 
 #include "fluid/source.h"
 #include "optics/light_rig.h"
+#include "optics/surface_rig.h"
 #include "optics/view.h"
 #include "scene/scene.h"
 
@@ -14,16 +15,19 @@ namespace gischt {
 // What moves a fluid of a scene: the solver, the procedure or the reader behind one section.
 std::unique_ptr<FluidSource> make_source(const Scene& scene, const FluidSection& fluid);
 
+// Reports the solids that stand where a simulated fluid is and do not stop it: meshes.
+void report_unmet_solids(const Scene& scene, const FluidSection& fluid, Job& job);
+
 // Whether frames of this fluid are computed (and cached as VDB), not read from files of somebody
 // else.
 bool is_computed(const FluidSection& fluid);
 
 // A scene over time: turns the frames of its fluids into what a render method is given. Loads
-// pictures of lights once.
+// pictures and meshes once.
 class World {
   public:
-    // The scene must outlive it. Throws what reading the pictures throws.
-    explicit World(const Scene& scene);
+    // The scene must outlive it. Throws what reading the files throws.
+    World(const Scene& scene, Job& job);
 
     // `frames` holds one frame per fluid of the scene, in order.
     View view(const std::vector<std::shared_ptr<const Frame>>& frames, int frame, Job& job);
@@ -33,6 +37,7 @@ class World {
   private:
     const Scene& scene_;
     LightRig lights_;
+    SurfaceRig surfaces_;
 };
 
 }  // namespace gischt

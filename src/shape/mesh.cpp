@@ -140,6 +140,49 @@ Box3d bounds(const Mesh& mesh) {
     return box;
 }
 
+bool add_polygon(Mesh& mesh, const std::vector<int>& polygon) {
+    std::vector<int> corners = polygon;
+    const auto place = [&](std::size_t i) {
+        return Vec3d(mesh.points[at(corners[i % corners.size()])]);
+    };
+    Vec3d normal;  // of least projection error, by Newell's sum
+    for (std::size_t i = 0; i < corners.size(); ++i) normal += cross(place(i), place(i + 1));
+    // Twice the area of a triangle as seen along the normal.
+    const auto turn = [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+        return dot(normal, cross(q - p, r - p));
+    };
+    bool is_convex = true;
+    for (std::size_t i = 0; i < corners.size() && is_convex; ++i) {
+        is_convex = turn(place(i), place(i + 1), place(i + 2)) >= 0;
+    }
+    if (!is_convex && corners.size() > 1024) return false;
+
+    // A corner is an ear where the polygon turns inwards and no other corner lies in its triangle.
+    const auto is_ear = [&](std::size_t i) {
+        const std::size_t n = corners.size();
+        const Vec3d a = place(i + n - 1), b = place(i), c = place(i + 1);
+        if (!(turn(a, b, c) > 0)) return false;
+        for (std::size_t k = 2; k + 1 < n; ++k) {
+            const Vec3d p = place(i + k);
+            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+        }
+        return true;
+    };
+    while (!is_convex && corners.size() > 3) {
+        const std::size_t n = corners.size();
+        std::size_t ear = 0;
+        while (ear < n && !is_ear(ear)) ++ear;
+        if (ear == n) break;  // it crosses itself: the rest as a fan
+        mesh.triangles.emplace_back(corners[(ear + n - 1) % n], corners[ear],
+                                    corners[(ear + 1) % n]);
+        corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(ear));
+    }
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+        mesh.triangles.emplace_back(corners[0], corners[i], corners[i + 1]);
+    }
+    return true;
+}
+
 Mesh with_smooth_normals(const Mesh& mesh, double crease_degrees) {
     const double least_cosine = std::cos(radians(crease_degrees)) - 1e-9;
     const std::vector<int> weld = welded(mesh.points);

@@ -41,6 +41,10 @@ double enclosed_volume(const Mesh& mesh);
 double surface_area(const Mesh& mesh);  // m^2
 Box3d bounds(const Mesh& mesh);
 
+// Appends a polygon of three or more points, cut into triangles: a fan where it is convex, else ear
+// by ear. False for one of more than 1024 corners that is not convex, which would take too long.
+bool add_polygon(Mesh& mesh, const std::vector<int>& corners);
+
 // The mesh with normals that are smooth across edges whose faces meet at less than
 // `crease_degrees`: at each corner the mean of the faces around, weighted by their angle there
 // (Thuermer & Wuethrich 1998). Points are split where corners differ.

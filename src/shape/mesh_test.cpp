@@ -72,6 +72,36 @@ TEST(Mesh, FaultsAreDroppedAndCounted) {
     EXPECT_TRUE(is_closed(mesh));
 }
 
+// Whatever the polygon, its triangles have its area and lie within: a star of ten corners and a
+// comb, which a fan would get wrong.
+TEST(Mesh, PolygonsAreCutWithinThemselves) {
+    const auto expect_area = [](const std::vector<Vec3f>& points, double area) {
+        Mesh mesh;
+        mesh.points = points;
+        std::vector<int> corners;
+        for (std::size_t i = 0; i < points.size(); ++i) corners.push_back(static_cast<int>(i));
+        ASSERT_TRUE(add_polygon(mesh, corners));
+        EXPECT_EQ(mesh.triangles.size(), points.size() - 2);
+        EXPECT_NEAR(surface_area(mesh), area, 1e-5);
+    };
+    std::vector<Vec3f> star, comb{{0, 0, 0}, {9, 0, 0}};
+    double area = 0;
+    for (int i = 0; i < 10; ++i) {
+        const double r = i % 2 ? 0.4 : 1, a = 2 * pi * i / 10;
+        star.emplace_back(Vec3d{r * std::cos(a), r * std::sin(a), 2});
+        area += 0.5 * 0.4 * std::sin(2 * pi / 10);
+    }
+    expect_area(star, area);
+    for (int i = 8; i >= 0; --i)
+        comb.emplace_back(static_cast<float>(i), i % 2 ? 5.0f : 1.0f, 0.0f);
+    double comb_area = 0;
+    for (std::size_t i = 0; i < comb.size(); ++i) {
+        const Vec3f &p = comb[i], q = comb[(i + 1) % comb.size()];
+        comb_area += 0.5 * static_cast<double>(p.x * q.y - p.y * q.x);
+    }
+    expect_area(comb, comb_area);
+}
+
 // Normals of a fine ball are those of the sphere to the order of the edge; a cube stays flat below
 // 90 degrees and is round above.
 TEST(Mesh, NormalsAreSmoothUpToTheCrease) {

@@ -26,8 +26,9 @@ bool FluidFrames::is_cached(int number) const {
 
 // Makes a source that can go on to `number`: from the saved state where that is earlier, else from
 // the beginning.
-void FluidFrames::start(int number) {
+void FluidFrames::start(int number, Job& job) {
     source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+    report_unmet_solids(scene_.scene, scene_.scene.fluids[fluid_], job);
     std::error_code ignored;
     if (!cache_ || !fs::is_regular_file(cache_->state(fluid_), ignored)) return;
     source_->load_state(cache_->state(fluid_));
@@ -71,7 +72,7 @@ void FluidFrames::compute_and_write(int number, RunStatistics& run, Job& job) {
 
 void FluidFrames::ensure(int number, RunStatistics& run, Job& job) {
     if (is_cached(number) || !cache_) return;
-    if (!can_give(number)) start(number);
+    if (!can_give(number)) start(number, job);
     const int first = source_->is_sequential() ? source_->last_frame() + 1 : number;
     for (int n = first; n <= number; ++n) {
         compute_and_write(n, run, job);
@@ -95,7 +96,7 @@ std::shared_ptr<const Frame> FluidFrames::get(int number, RunStatistics& run, Jo
         frame.time = scene_.scene.time_of(number);
         return std::make_shared<const Frame>(std::move(frame));
     }
-    if (!can_give(number)) start(number);
+    if (!can_give(number)) start(number, job);
     if (source_->is_sequential()) {
         for (int n = source_->last_frame() + 1; n < number; ++n) compute(n, run, job);
     }

@@ -29,7 +29,7 @@ class FluidFrames {
   private:
     bool is_cached(int number) const;
     bool can_give(int number) const;
-    void start(int number);
+    void start(int number, Job& job);
     Frame compute(int number, RunStatistics& run, Job& job);
     void compute_and_write(int number, RunStatistics& run, Job& job);
     void save_state(bool now);

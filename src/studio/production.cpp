@@ -207,7 +207,7 @@ std::vector<std::string> render(const LoadedScene& scene, const Order& order, Ru
     std::vector<std::string> written;
     std::vector<std::shared_ptr<const Frame>> frames(fluids.size());
     std::optional<View> base;
-    World world(scene.scene);
+    World world(scene.scene, job);
     for (int i = 0; i < count; ++i) {
         const int frame = order.turntable > 0 ? order.frames.first : order.frames[i];
         const int number = order.turntable > 0 ? i + 1 : frame;

@@ -16,7 +16,15 @@ double spacing(const Field& f, int axis) {
     return length(f.to_world.column[static_cast<std::size_t>(axis)]);
 }
 
-// d u_of / d x_along in 1/s, one-sided at the bounds of the field, beyond which it means nothing.
+// Component of a vector along an axis of the cells, which may be turned in space.
+float along_cells(const Field& f, int axis, const Vec3i& cell) {
+    const Vec3f v{component(f, 0, cell), component(f, 1, cell), component(f, 2, cell)};
+    const Vec3d& edge = f.to_world.column[static_cast<std::size_t>(axis)];
+    return dot(v, Vec3f(normalize(edge)));
+}
+
+// d u_of / d x_along in 1/s, both along axes of the cells, one-sided at the bounds of the field,
+// beyond which it means nothing.
 double derivative(const Field& f, int of, int along, const Vec3i& cell) {
     const Box3i& box = f.map().bounds();
     Vec3i ahead = cell, behind = cell;
@@ -24,7 +32,7 @@ double derivative(const Field& f, int of, int along, const Vec3i& cell) {
     if (cell[along] > box.lo[along]) --behind[along];
     const int cells = ahead[along] - behind[along];
     if (cells == 0) return 0;
-    const float difference = component(f, of, ahead) - component(f, of, behind);
+    const float difference = along_cells(f, of, ahead) - along_cells(f, of, behind);
     return static_cast<double>(difference) / (cells * spacing(f, along));
 }
 

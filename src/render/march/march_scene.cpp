@@ -31,6 +31,10 @@ std::optional<NarrowLight> as_narrow(const Light& light) {
 void refuse_unknown_surfaces(const SurfaceSet& surfaces) {
     for (int i = 0; i < surfaces.size(); ++i) {
         const SurfaceInfo& info = surfaces.info(i);
+        if (info.is_lamp) {
+            throw Error(ErrorKind::Usage, "march", fmt::format("light '{}' has a size", info.name),
+                        "take method 'path'");
+        }
         const bool is_special = info.holdout || info.shadow_catcher;
         if (info.material == MaterialKind::Lambert && !is_special) continue;
         throw Error(ErrorKind::Usage, "march",

@@ -463,5 +463,32 @@ TEST(SkyDirections, CoverTheSphereAndHoldAllTheLight) {
     }
 }
 
+// What one march cannot do is refused by name, with the method that can.
+TEST(March, RefusesSurfacesThatItCannotShade) {
+    const auto refusal = [](const MaterialKind kind, bool is_holdout) -> std::string {
+        SphereSurface ball;
+        ball.name = "lens";
+        ball.material.kind = kind;
+        ball.material.holdout = is_holdout;
+        View view;
+        view.surfaces = SurfaceSet({ball}, 0);
+        Job job;
+        try {
+            make_march_method({})->render(view, {}, job);
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    for (const MaterialKind kind : {MaterialKind::Conductor, MaterialKind::Dielectric,
+                                    MaterialKind::Plastic, MaterialKind::None}) {
+        const std::string text = refusal(kind, false);
+        EXPECT_NE(text.find("'lens'"), text.npos);
+        EXPECT_NE(text.find("take method 'path'"), text.npos) << text;
+    }
+    EXPECT_EQ(refusal(MaterialKind::Lambert, false), "");
+    EXPECT_NE(refusal(MaterialKind::Lambert, true), "");
+}
+
 }  // namespace
 }  // namespace gischt

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "math/sobol.h"
 #include "optics/environment.h"
+#include "optics/surface_params.h"
 #include "render/march/aimed_sky.h"
 #include "render/march/irradiance_map.h"
 #include "render/march/march.h"

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "image/color.h"
 #include "optics/environment.h"
 #include "optics/local_lights.h"
+#include "optics/material.h"
 #include "optics/medium.h"
 #include "render/path/media_walk.h"
 
@@ -54,6 +56,27 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
     }
     if (is_emissive && !has_interiors) glow = EmissionSampler(view.media);
     sort_lights(job);
+    refuse_what_none_can_meet();
+}
+
+// A light without size behind glass: no shadow ray passes the glass, and no random walk meets it.
+void PathScene::refuse_what_none_can_meet() const {
+    const auto is_tiny = [](const LightPtr& light) {
+        return light->is_delta() || dynamic_cast<const SunLight*>(light.get());
+    };
+    const auto tiny = std::find_if(view.lights.begin(), view.lights.end(), is_tiny);
+    if (tiny == view.lights.end()) return;
+    for (int i = 0; i < view.surfaces.size(); ++i) {
+        const SurfaceInfo& info = view.surfaces.info(i);
+        if (info.material != MaterialKind::Dielectric || !info.medium) continue;
+        throw Error(
+            ErrorKind::Usage, "path",
+            fmt::format("light '{}' has no size, and would not be seen in the medium behind "
+                        "the glass of '{}'",
+                        (*tiny)->name, info.name),
+            "take a rect, disc, sphere, constant or environment light, or method 'march' "
+            "without the glass");
+    }
 }
 
 void PathScene::sort_lights(Job& job) {

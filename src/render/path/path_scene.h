@@ -44,6 +44,7 @@ struct PathScene {
 
   private:
     void sort_lights(Job& job);
+    void refuse_what_none_can_meet() const;
     void make_grids(SunSource& sun, Job& job) const;
 };
 

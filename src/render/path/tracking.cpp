@@ -115,20 +115,35 @@ bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& ra
 Vec3f Tracker::transmittance(const Ray& ray, TransmittanceEstimator estimator,
                              RandomStream& random) {
     if (media.empty()) return Vec3f(1);
-    if (estimator == TransmittanceEstimator::Exact) {
-        const Vec3f depth = exact_depth(ray);
+    const auto dimmed = [this](const Vec3f& depth) {
         if (is_grey) return Vec3f(fast_exp(-depth.x));
-        return {fast_exp(-depth.x), fast_exp(-depth.y), fast_exp(-depth.z)};
+        return Vec3f(fast_exp(-depth.x), fast_exp(-depth.y), fast_exp(-depth.z));
+    };
+    if (estimator == TransmittanceEstimator::Exact) return dimmed(exact_depth(ray));
+    // What has a closed form needs no tracking.
+    std::array<const Medium*, most_media> tracked;
+    std::size_t count = 0;
+    Vec3f depth;
+    for (const Medium* medium : media) {
+        if (medium->cell_size() > 0) {
+            tracked[count++] = medium;
+        } else {
+            depth += static_cast<float>(exact_density_integral(*medium, ray, lookups)) *
+                     medium->cross_sections().extinction();
+        }
     }
-    return ratio_tracking(ray, estimator == TransmittanceEstimator::ResidualRatio, random);
+    const Vec3f closed = dimmed(depth);
+    if (count == 0 || max_component(closed) == 0) return closed;
+    return closed * ratio_tracking({tracked.data(), count}, ray,
+                                   estimator == TransmittanceEstimator::ResidualRatio, random);
 }
 
 // Ratio tracking (Novak, Selle, Jarosz 2014): the product of the chances of a null collision. With
 // the mean of each block as control, what remains is the residual around it.
-Vec3f Tracker::ratio_tracking(const Ray& ray, bool with_control, RandomStream& random) {
+Vec3f Tracker::ratio_tracking(std::span<const Medium* const> tracked, const Ray& ray,
+                              bool with_control, RandomStream& random) {
     constexpr float faint = 0.05f, survival = 0.25f;
-    constexpr float longest = 1e30f;  // in place of infinity, which must not meet a 0
-    MediaWalk walk(media, ray);
+    MediaWalk walk(tracked, ray);
     MediaRun run;
     Vec3f product(1), control_depth;
     float depth_to_go = exponential(random.next());
@@ -141,7 +156,7 @@ Vec3f Tracker::ratio_tracking(const Ray& ray, bool with_control, RandomStream& r
                 const float mean = a.segment.mean / a.medium->strength();
                 if (a.segment.mean > 0) control += mean * a.medium->cross_sections().extinction();
             }
-            control_depth += std::min(static_cast<float>(run.t1 - run.t0), longest) * control;
+            control_depth += static_cast<float>(run.t1 - run.t0) * control;
             majorant = is_flat ? 0 : std::max(run.max - run.mean, run.mean - run.min);
         }
         if (majorant == 0) continue;

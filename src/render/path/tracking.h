@@ -44,7 +44,8 @@ struct Tracker {
   private:
     bool choose_medium(const MediaRun& run, double t, int hero, float majorant, float u,
                        PathWeight& weight, Collision& end);
-    Vec3f ratio_tracking(const Ray& ray, bool with_control, RandomStream& random);
+    Vec3f ratio_tracking(std::span<const Medium* const> tracked, const Ray& ray, bool with_control,
+                         RandomStream& random);
 };
 
 // The estimator of shadow rays for which there is no cache.

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/world.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/load.h"
+#include "schema/toml.h"
+
+namespace gischt {
+namespace {
+
+// A scene of one fluid from a file, which nobody opens here.
+Scene scene_of(const std::string& keys) {
+    return load_scene_tree("test",
+                           parse_toml("[fluid]\ntype = \"file\"\nfile = \"a.vdb\"\n" + keys, "t"),
+                           "", {})
+        .scene;
+}
+
+Field constant_field(const std::vector<float>& values) {
+    Field f;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+        f.component.emplace_back(TileMap::box(Vec3i(8)), values[c]);
+        f.background[c] = values[c];
+    }
+    f.to_world = Transform::scale_translate(0.5, {1, 0, 0});
+    return f;
+}
+
+// The first value of each component of a field of the frame that the view has.
+std::vector<float> seen(const Scene& scene, const std::string& name) {
+    auto frame = std::make_shared<Frame>();
+    frame->fields["density"] = constant_field({1});
+    frame->fields["distance"] = constant_field({0.5f});
+    frame->fields["distance"].kind = FieldClass::LevelSet;
+    frame->fields["velocity"] = constant_field({1, 2, 3});
+    frame->fields["vorticity"] = constant_field({1, 2, 3});
+    frame->fields["Cd"] = constant_field({1, 2, 3});
+    Job job;
+    const View view = World(scene).view({frame}, 1, job);
+    std::vector<float> out;
+    const Field& f = *view.frames.at(0)->find(name);
+    for (std::size_t c = 0; c < f.component.size(); ++c) {
+        out.push_back(f.component[c].values().front());
+        EXPECT_EQ(f.background[c], out.back());
+    }
+    return out;
+}
+
+void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-5f) << i;
+}
+
+TEST(World, TurnsAndStretchesWhatPointsSomewhere) {
+    // A quarter turn around z takes x to y, and the fluid is three times as large.
+    const Scene scene = scene_of("rotate_degrees = [0, 0, 90]\nscale = 3\ntranslate = [5, 6, 7]\n");
+    expect_near(seen(scene, "velocity"), {-6, 3, 9});
+    expect_near(seen(scene, "vorticity"), {-2, 1, 3});  // 1/s knows no length
+    expect_near(seen(scene, "Cd"), {1, 2, 3});
+    expect_near(seen(scene, "distance"), {1.5f});
+    expect_near(seen(scene, "density"), {1});
+}
+
+TEST(World, LeavesFluidsWhereTheyAre) {
+    const Scene scene = scene_of("");
+    for (const char* name : {"velocity", "vorticity", "Cd"}) {
+        expect_near(seen(scene, name), {1, 2, 3});
+    }
+}
+
+// What is carried along must stay on its way: a point of the fluid and the end of its velocity's
+// arrow after a second are the same before and after the placement.
+TEST(World, ArrowsEndWhereTheFluidTakesThem) {
+    const Scene scene = scene_of("rotate_degrees = [20, -50, 130]\nscale = 0.7\n");
+    const Transform placement = common_of(scene.fluids[0]).placement();
+    const std::vector<float> v = seen(scene, "velocity");
+    const Vec3d start(0.3, -0.2, 0.9), arrow(1, 2, 3);
+    const Vec3d moved = placement.point(start) + Vec3d(v[0], v[1], v[2]);
+    EXPECT_LT(length(moved - placement.point(start + arrow)), 1e-5);
+}
+
+}  // namespace
+}  // namespace gischt
