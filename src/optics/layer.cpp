@@ -215,27 +215,25 @@ void LayerWalk::fill(LayerRun& run, double t1, double height, int band) const {
     run.t1 = t1;
     run.entry = run.step = {};
     const int sign = path_.piece[static_cast<std::size_t>(piece_)].sign;
-    if (band < 0 || sign == 0) {  // the same all along
-        const double h = band < 0 ? 0 : height_;
-        run.min = run.mean = run.max = profile.density(h);
-        run.entry.x = static_cast<float>(h);
+    if (band < 0 || sign == 0) {  // the same all along, and said to be so
+        run.entry.x = static_cast<float>(band < 0 ? 0 : height_);
+        run.min = run.mean = run.max = static_cast<double>(profile.density(run.entry.x));
         return;
+    }
+    const auto b = layer_->breaks_.begin() + band;
+    const double h0 = std::clamp(height_, b[0], b[1]), h1 = std::clamp(height, b[0], b[1]);
+    const double d0 = profile.density(h0), d1 = profile.density(h1);
+    const double span = (t1 - t_) * path_.speed;
+    run.min = std::min(d0, d1);
+    run.max = std::max(d0, d1);
+    run.mean = std::clamp(layer_->integral(path_, h0, h1, span, true) / span, run.min, run.max);
+    if (layer_->is_round_) {
+        const double s = (t_ - path_.nearest_t) * path_.speed;
+        run.entry = Vec3f(Vec3d(height_, height_ + layer_->radius_, 0));
+        run.step = Vec3f(Vec3d(2 * s * path_.speed, path_.speed * path_.speed, 0));
     } else {
-        const auto b = layer_->breaks_.begin() + band;
-        const double h0 = std::clamp(height_, b[0], b[1]), h1 = std::clamp(height, b[0], b[1]);
-        const double d0 = profile.density(h0), d1 = profile.density(h1);
-        const double span = (t1 - t_) * path_.speed;
-        run.min = std::min(d0, d1);
-        run.max = std::max(d0, d1);
-        run.mean = std::clamp(layer_->integral(path_, h0, h1, span, true) / span, run.min, run.max);
-        if (layer_->is_round_) {
-            const double s = (t_ - path_.nearest_t) * path_.speed;
-            run.entry = Vec3f(Vec3d(height_, height_ + layer_->radius_, 0));
-            run.step = Vec3f(Vec3d(2 * s * path_.speed, path_.speed * path_.speed, 0));
-        } else {
-            run.entry.x = static_cast<float>(height_);
-            run.step.x = static_cast<float>(path_.slope);
-        }
+        run.entry.x = static_cast<float>(height_);
+        run.step.x = static_cast<float>(path_.slope);
     }
     // The float of look-ups on the run; where a tent ends it is the rounding of 1 - 1.
     const double ends = profile.kind == HeightProfile::Kind::Tent ? 1e-6 : 0;

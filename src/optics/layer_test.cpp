@@ -161,7 +161,9 @@ TEST(Layer, ALevelRayGoesOnForEver) {
     ASSERT_TRUE(walk.next(run));
     EXPECT_EQ(run.t0, 1);
     EXPECT_TRUE(std::isinf(run.t1));
-    EXPECT_DOUBLE_EQ(run.mean, std::exp(-1));
+    EXPECT_NEAR(run.mean, std::exp(-1), 1e-6);
+    // A tracker must see that it is the same all along: it could not walk to the end.
+    EXPECT_EQ(run.min, run.max);
     EXPECT_FALSE(walk.next(run));
     // Downwards: several runs, the last one below the base.
     LayerWalk down(layer, {{0, 0, 100}, {0, 0, -1}});
@@ -169,6 +171,7 @@ TEST(Layer, ALevelRayGoesOnForEver) {
     while (down.next(run)) ++count;
     EXPECT_TRUE(std::isinf(run.t1));
     EXPECT_EQ(run.mean, 1);
+    EXPECT_EQ(run.min, run.max);
     EXPECT_NEAR(run.t0, 98, 1e-9);
     EXPECT_EQ(count, 16);  // 98 m are 14.1 halvings
 }
