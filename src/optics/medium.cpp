@@ -101,6 +101,7 @@ void Medium::take(const MediumParams& params, double time) {
     }
     phase_ = make_phase(
         {params.phase, params.g.at(time), params.g2, params.lobe_weight, params.droplet_diameter});
+    phase_lobes_ = PhaseLobes::of(phase_);
     multiple_scattering_ = params.multiple_scattering;
     density_scale_ = static_cast<float>(params.density_scale.at(time));
     strength_ = max_component(cross_sections_.extinction());

@@ -11,7 +11,7 @@
 #include "optics/blackbody.h"
 #include "optics/layer.h"
 #include "optics/medium_params.h"
-#include "optics/phase.h"
+#include "optics/phase_lobes.h"
 
 namespace gischt {
 
@@ -82,6 +82,7 @@ class Medium {
 
     const CrossSections& cross_sections() const { return cross_sections_; }
     const PhaseFunction& phase() const { return phase_; }
+    const PhaseLobes& phase_lobes() const { return phase_lobes_; }
     const MultipleScattering& multiple_scattering() const { return multiple_scattering_; }
     bool is_emissive() const { return emission_ != EmissionKind::None; }
     bool has_color() const { return !dyed_.empty(); }
@@ -191,6 +192,7 @@ class Medium {
     float glow_elsewhere_ = 0;      // where glow_ has no brick: K of a region, a background
     CrossSections cross_sections_;
     PhaseFunction phase_;
+    PhaseLobes phase_lobes_;
     MultipleScattering multiple_scattering_;
     EmissionKind emission_ = EmissionKind::None;
     double cell_size_ = 0;

@@ -22,7 +22,7 @@ PathParams plain() {
     PathParams p;
     p.shadow = TransmittanceEstimator::Ratio;
     p.camera = CameraSegment::Tracking;
-    p.halo = false;
+    p.bridge = false;
     p.roulette = 0;
     return p;
 }
@@ -38,14 +38,14 @@ std::vector<NamedParams> alternatives() {
     add("residual ratio", plain(), [](PathParams& p) { p.shadow = Shadow::ResidualRatio; });
     add("exact", plain(), [](PathParams& p) { p.shadow = Shadow::Exact; });
     add("cached", plain(), [](PathParams& p) { p.shadow = Shadow::Cached; });
-    add("halo", plain(), [](PathParams& p) { p.halo = true; });
+    add("bridge", plain(), [](PathParams& p) { p.bridge = true; });
     add("profile of 1", {}, [](PathParams& p) {
         p = plain();
         p.camera = CameraSegment::Profile;
         p.points = 1;
     });
     add("as it is", {}, [](PathParams&) {});
-    add("no halo", {}, [](PathParams& p) { p.halo = false; });
+    add("no bridge", {}, [](PathParams& p) { p.bridge = false; });
     add("8 points, 3 splits, exact", {}, [](PathParams& p) {
         p.points = 8;
         p.splits = 3;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that reaches a scattering point straight from the lights, from suns also through one more
-// scattering, and what a path meets by itself.
+// Light that reaches a scattering point straight from the lights, and what a path meets by itself.
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "image/color.h"
 #include "render/path/path_tracer.h"
@@ -24,13 +22,6 @@ Ray Scatterer::leave(const Vec3d& direction, double distance) const {
     Ray ray = hit ? leaving_ray(*hit, direction) : Ray{point, direction};
     ray.t_max = distance;
     return ray;
-}
-
-// Scattering so even that every direction is as good as another needs no halo.
-bool PathTracer::has_halo(const Medium& medium) const {
-    constexpr double least = 0.3;  // mean cosine
-    return scene_.params.halo && !scene_.suns.empty() &&
-           std::abs(mean_cosine(medium.phase())) > least;
 }
 
 // Transmittance of a shadow ray, 0 where a surface blocks it.
@@ -60,7 +51,10 @@ Vec3f PathTracer::shadow(const Scatterer& at, const Ray& ray, RandomStream& rand
 }
 
 void PathTracer::direct_light(const Scatterer& at, const Leg& leg, RandomStream& random) {
-    for (const SunSource& sun : scene_.suns) from_sun(sun, at, leg, 1, random);
+    // Later scatterings of a run are reached by bridges.
+    if (!at.medium || leg.run == 1 || !has_bridges(*at.medium)) {
+        for (const SunSource& sun : scene_.suns) from_sun(sun, at, leg, random);
+    }
     if (!scene_.local.empty()) from_local(at, leg, random);
     if (!scene_.broad.empty()) from_broad(at, leg, random);
     if (!scene_.glow.is_empty()) from_glow(at, leg, random);
@@ -91,64 +85,22 @@ void PathTracer::from_glow(const Scatterer& at, const Leg& leg, RandomStream& ra
     deposit(value * glow * (1 / (pdf + at.pdf(direction))), leg.events);
 }
 
-void PathTracer::from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
+void PathTracer::from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg,
                           RandomStream& random) {
     const LightSample s = sun.light->sample(at.point, random.two());
-    Vec3f value = factor * at.value(s.direction);
-    if (max_component(s.weight) <= 0 || max_component(value) <= 0) return;
-    // The way here could also have been drawn around the sun (from_halo): balance heuristic.
-    if (leg.halo_of) {
-        const float other =
-            gischt::value(leg.halo_of->phase(), dot(at.forward, Vec3f(sun.direction)));
-        value *= leg.pdf / (leg.pdf + other);
-    }
-    const Ray ray = at.leave(s.direction, s.distance);
-    Vec3f light;
-    if (sun.is_cached() && !inside_) {
-        if (is_blocked(ray)) return;
-        ++rays_;
-        light = sun_transmittance(sun, ray.origin, s.direction, scene_.params, tracker_, random);
-    } else {
-        light = shadow(at, ray, random);
-    }
-    deposit(leg.weight.value() * value * s.weight * light, leg.events, sun.index);
+    const Vec3f value = at.value(s.direction) * s.weight;
+    if (max_component(value) <= 0) return;
+    deposit(leg.weight.value() * value * sunlight(sun, at, s, random), leg.events, sun.index);
 }
 
-// Suns seen through one more scattering: the direction of the flight before it is drawn around the
-// sun by the phase function, as that scattering will favour it. Together with from_sun() at the
-// next vertex no contribution exceeds what the lesser of the two phase functions gives, so that a
-// forward peak does not sparkle.
-void PathTracer::from_halo(const Scatterer& at, const Leg& leg, RandomStream random) {
-    const Medium& medium = *at.medium;
-    if (!has_halo(medium)) return;
-    const auto suns = static_cast<float>(scene_.suns.size());
-    const auto pick = static_cast<std::size_t>(random.next() * suns);
-    const SunSource& sun = scene_.suns[std::min(pick, scene_.suns.size() - 1)];
-    const PhaseSample flight = sample(medium.phase(), Vec3f(sun.direction), random.two());
-    const float pdf = value(medium.phase(), dot(at.forward, flight.direction));
-    const float factor = suns * pdf / (pdf + flight.pdf);
-    // Only a collision on the way to the next surface or boundary counts.
-    Leg next = leg;
-    next.ray = {at.point, Vec3d(flight.direction)};
-    next.halo_of = nullptr;
-    const std::optional<InteriorStack> inside = inside_;
-    Collision collision;
-    std::optional<SurfaceHit> hit;
-    const bool had_glow = std::exchange(tracker_.is_emissive, false);
-    if (fly(next, random, collision, hit) == End::Collision) {
-        const Medium* other = tracker_.media[collision.medium];
-        const CrossSections& cross = other->cross_sections();
-        next.weight.weight = next.weight.weight * collision.color * cross.scattering /
-                             max(cross.extinction(), Vec3f(1e-30f));
-        ++next.events;
-        from_sun(sun, {next.ray.at(collision.t), flight.direction, other, nullptr, nullptr}, next,
-                 factor, random);
-    }
-    tracker_.is_emissive = had_glow;
-    if (inside) {
-        inside_ = inside;
-        take_media();
-    }
+// What of a sun arrives.
+Vec3f PathTracer::sunlight(const SunSource& sun, const Scatterer& at, const LightSample& s,
+                           RandomStream& random) {
+    const Ray ray = at.leave(s.direction, s.distance);
+    if (!sun.is_cached() || inside_) return shadow(at, ray, random);
+    if (is_blocked(ray)) return {};
+    ++rays_;
+    return sun_transmittance(sun, ray.origin, s.direction, scene_.params, tracker_, random);
 }
 
 // One light at a finite place, drawn by how brightly it would shine here.

@@ -23,9 +23,9 @@ const Table<PathParams>& path_table() {
                   .max = 256})
             .add("splits", &PathParams::splits,
                  {.help = "How many of these points a path goes on from", .min = 1, .max = 256})
-            .add("halo", &PathParams::halo,
-                 {.help = "Reach suns through one more scattering around their direction, against "
-                          "sparkles of forward scattering"})
+            .add("bridge", &PathParams::bridge,
+                 {.help = "Reach suns through chains of scatterings that end in their direction, "
+                          "against sparkles of forward scattering"})
             .add("correction", &PathParams::correction,
                  {.help = "Chance with which a transmittance from the grid is replaced by the "
                           "exact one, which removes the grid's error in the mean",

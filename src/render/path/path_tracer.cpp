@@ -112,6 +112,7 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         at.weight.weight = leg.weight.weight * p.weight;
         at.events = 1;
         const Medium* medium = tracker_.media[p.medium];
+        count_run(at, medium);
         const Vec3d point = leg.ray.at(p.t);
         const Vec3f albedo = medium->cross_sections().scattering /
                              max(medium->cross_sections().extinction(), Vec3f(1e-30f));
@@ -131,6 +132,7 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         next.weight.weight = leg.weight.weight * p.weight * (n / static_cast<float>(splits));
         next.start = max_component(next.weight.value());
         next.events = 1;
+        count_run(next, tracker_.media[p.medium]);
         random = stream_of(numbers, 2);
         go_on({leg.ray.at(p.t), forward, tracker_.media[p.medium], nullptr, nullptr}, next, random);
         follow(next, random);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -55,12 +56,22 @@ class PathTracer {
     struct Leg {
         Ray ray;
         PathWeight weight;
-        float start = 1;                  // the weight with which the path set out
-        int events = 0;                   // scatterings so far
-        int mirrors = 0;                  // delta scatterings of surfaces so far
-        Vec3d from;                       // the last scattering that was none of these
-        float pdf = 0;                    // of the direction from there, 1/sr; 0: nothing was drawn
-        const Medium* halo_of = nullptr;  // see from_sun()
+        float start = 1;  // the weight with which the path set out
+        int events = 0;   // scatterings so far
+        int mirrors = 0;  // delta scatterings of surfaces so far
+        Vec3d from;       // the last scattering that was none of these
+        float pdf = 0;    // of the direction from there, 1/sr; 0: nothing was drawn
+        // The scatterings in succession by one medium up to here (see sun_bridge.cpp).
+        const Medium* run_in = nullptr;
+        int run = 0;
+    };
+    // Turns that end in the direction of a sun.
+    struct Chain {
+        std::size_t turns = 0;                                   // before the last one
+        std::array<PhaseLobes::Lobe, PhaseLobes::longest> lobe;  // of each
+        std::array<float, PhaseLobes::longest + 1> rest;  // mean cosine of those from here on
+        LightSample sun;
+        float value = 0;  // of all turns together, 1/sr
     };
     enum class End { Infinity, Surface, Collision };
 
@@ -75,18 +86,27 @@ class PathTracer {
     bool scatter_in_medium(Leg& leg, const Collision& collision, RandomStream& random);
     bool scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStream& random);
     void go_on(const Scatterer& at, Leg& leg, RandomStream& random);
+    static void count_run(Leg& leg, const Medium* medium);
     bool survives(Leg& leg, RandomStream& random) const;
 
     void direct_light(const Scatterer& at, const Leg& leg, RandomStream& random);
-    void from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
-                  RandomStream& random);
+    void from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, RandomStream& random);
+    Vec3f sunlight(const SunSource& sun, const Scatterer& at, const LightSample& s,
+                   RandomStream& random);
     void from_local(const Scatterer& at, const Leg& leg, RandomStream& random);
     void from_glow(const Scatterer& at, const Leg& leg, RandomStream& random);
     float glow_share(const Leg& leg) const;
     void from_broad(const Scatterer& at, const Leg& leg, RandomStream& random);
-    void from_halo(const Scatterer& at, const Leg& leg, RandomStream random);
     void from_infinity(const Leg& leg, const Vec3f& transmittance);
     void from_surface(const Leg& leg, const SurfaceHit& hit, const Vec3f& transmittance);
+
+    bool has_bridges(const Medium& medium) const;
+    void set_out_bridges(const Scatterer& at, const Leg& leg, RandomStream random);
+    static Chain chain_of(const Scatterer& at, const SunSource& sun, int turns,
+                          RandomStream& random);
+    void bridge(const Scatterer& at, Leg leg, const SunSource& sun, const Chain& chain,
+                float factor, RandomStream& random);
+    bool take_flight(Leg& leg, const Medium& medium, RandomStream& random);
 
     float missed_light(const Scatterer& at, RandomStream& random);
 
@@ -104,7 +124,6 @@ class PathTracer {
     void cross(const SurfaceHit& hit);
     void take_media();
     bool passes(const SurfaceHit& hit) const;
-    bool has_halo(const Medium& medium) const;
 
     // Adds light that was scattered `events` times.
     void deposit(const Vec3f& radiance, int events, int light = -1);

@@ -7,6 +7,17 @@
 
 namespace gischt {
 
+float forward_depth(const SunSource& sun, const Vec3d& point,
+                    std::span<const Medium* const> media) {
+    float depth = 0;
+    for (std::size_t m = 0; m < media.size() && sun.is_cached(); ++m) {
+        if (!sun.depth[m]) continue;
+        depth +=
+            (*sun.depth[m])(point)*media[m]->strength() * (1 - media[m]->phase_lobes().mean_turn);
+    }
+    return depth;
+}
+
 Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& towards,
                         const PathParams& params, Tracker& tracker, RandomStream& random) {
     const Ray ray{point, towards};

@@ -22,6 +22,11 @@ struct SunSource {
     bool is_cached() const { return !depth.empty(); }
 };
 
+// How deep a point lies in the shadow of the media, for light that forward scattering carries on
+// its way: the sum of their optical depths (strongest channel) towards the sun times 1 - |mean
+// cosine|, from the cache, 0 where there is none. A guide, not an estimate.
+float forward_depth(const SunSource& sun, const Vec3d& point, std::span<const Medium* const> media);
+
 // The transmittance from a point to a sun along `towards` (a direction within its disc), without
 // bias: from the cache that it must have, and with some chance p the exact one minus the cached one
 // over p. The chance follows what may be wrong: nothing of the light arrives, or next to all of it.

@@ -88,6 +88,7 @@ bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomS
     // fly() counted the extinction of each channel over that of the hero.
     leg.weight.weight = leg.weight.weight * albedo;
     ++leg.events;
+    count_run(leg, medium);
     if (!survives(leg, random)) return false;
     const Scatterer at{point, Vec3f(leg.ray.direction), medium, nullptr, nullptr};
     direct_light(at, leg, random);
@@ -97,13 +98,16 @@ bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomS
 
 // Leaves a point of a medium in a new direction.
 void PathTracer::go_on(const Scatterer& at, Leg& leg, RandomStream& random) {
-    const bool is_last = leg.events >= depth_;
-    if (!is_last) from_halo(at, leg, random.branch(1));
+    if (has_bridges(*at.medium)) set_out_bridges(at, leg, random.branch(1));
     const PhaseSample next = sample(at.medium->phase(), at.forward, random.leading_two());
     leg.ray = {at.point, Vec3d(next.direction)};
     leg.from = at.point;
     leg.pdf = next.pdf;
-    leg.halo_of = !is_last && has_halo(*at.medium) ? at.medium : nullptr;
+}
+
+void PathTracer::count_run(Leg& leg, const Medium* medium) {
+    leg.run = leg.run_in == medium ? leg.run + 1 : 1;
+    leg.run_in = medium;
 }
 
 // False where the path ends.
@@ -121,7 +125,6 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
         if (leg.events >= depth_) return false;
         Leg lit = leg;
         ++lit.events;
-        lit.halo_of = nullptr;
         direct_light({hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf}, lit, random);
     }
     const Vec2f u = random.leading_two();
@@ -129,7 +132,7 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
     if (!next) return false;
     leg.weight.weight = leg.weight.weight * next->weight;
     leg.pdf = next->pdf;
-    leg.halo_of = nullptr;
+    leg.run_in = nullptr;
     if (next->is_delta) {
         if (++leg.mirrors > most_mirrors) return false;
     } else {
