@@ -109,6 +109,36 @@ class BadInputs(CliCase):
         self.run_gischt("render", "missing.vdb", "-o", "x.png", status=3)
         self.assertEqual(self.files(), sorted(broken))
 
+    def test_empty_grids(self):
+        self.write("still.toml", """frames = [1, 1]
+[fluid]
+type = "smoke"
+[fluid.domain]
+resolution = 16
+[[light]]
+type = "constant"
+radiance = 0.5
+[film]
+width = 32
+height = 24
+""")
+        self.run_gischt("sim", "still.toml", "-o", "c")
+        self.assertIn("0 active voxels", self.run_gischt("info", "c/fluid_0001.vdb").stdout)
+        # A bare one has nothing to show, and says so; with fire as well.
+        for flags in ([], ["--preset", "fire"], ["--preset", "smoke", "--method", "path"]):
+            self.assertIn("c/fluid_0001.vdb", self.run_gischt("render", "c/fluid_0001.vdb", *flags, status=3).stderr)
+        self.assertFalse((self.dir / "fluid_0001.png").exists())
+        # In a scene it is empty air before the sky.
+        for method in ("march", "path"):
+            self.run_gischt("render", "c", "--method", method, "--spp", 2, "-o", f"{method}.exr")
+            self.run_gischt("render", "still.toml", "--set", "fluid.file=c/fluid_0001.vdb", "--method", method, "--spp", 2, "-o",
+                            f"{method}_file.exr")
+            self.run_gischt("compare", f"{method}.exr", f"{method}_file.exr", "--tol", 0)
+        self.run_gischt("compare", "march.exr", "path.exr", "--tol", 1e-6)
+        self.run_gischt("render", "cloud", "--set", "fluid.file=c/fluid_0001.vdb", "--size", "32x24", "--spp", 1, "-o", "sky.png")
+        for quantity in ("density", "temperature"):
+            self.run_gischt("render", "c", "--method", "field", "--set", f"render.field.quantity={quantity}", "-o", f"{quantity}.png")
+
     def test_broken_images(self):
         self.write("a.png", b"not a picture")
         self.write("a.exr", b"\x76\x2f\x31\x01")
@@ -310,6 +340,62 @@ class Films(CliCase):
         seconds = json.loads((self.dir / "s.json").read_text())["images"][0]["wall_seconds"]
         self.assertGreater(seconds, 1.9)
         self.assertLess(seconds, 3)
+
+
+class Paths(CliCase):
+    SCENE = ["cloud", "--method", "path", "--set", "fluid.resolution=24", "--size", "32x20"]
+
+    def render(self, *arguments, status=0):
+        return self.run_gischt("render", *self.SCENE, *arguments, status=status)
+
+    def test_killed_renders_go_on_to_the_same_bits(self):
+        flags = ["--spp", 600]
+        self.render(*flags, "-o", "whole.exr", "--threads", 1)
+
+        def stop(how, after):
+            process = subprocess.Popen([GISCHT, "render", *self.SCENE, *map(str, flags), "-o", "x.film", "-o", "x.exr", "-q",
+                                        "--threads", "2"], cwd=self.dir, stderr=subprocess.DEVNULL)
+            time.sleep(after)
+            process.send_signal(how)
+            return process.wait(timeout=30)
+
+        # One that is asked to stop leaves its film; what is killed has no time to say good-bye.
+        wait = 0.5
+        while "x.film" not in self.files():
+            self.assertEqual(stop(signal.SIGTERM, wait), 130)
+            wait += 0.5
+        for _ in range(2):
+            self.assertEqual(stop(signal.SIGKILL, wait), -signal.SIGKILL)
+        done = self.run_gischt("info", "x.film").stdout
+        self.assertNotIn("samples 0:600\n", done)
+        self.render(*flags, "-o", "x.film", "-o", "x.exr", "--threads", 2)
+        self.run_gischt("compare", "x.exr", "whole.exr", "--tol", 0)
+        self.assertEqual(self.files(), ["whole.exr", "x.exr", "x.film"])
+
+    def test_parts_merge_to_the_bits_of_the_whole(self):
+        self.render("--spp", 64, "-o", "whole.exr", "--threads", 2)
+        for first in (48, 0, 32, 16):
+            self.render("--samples", f"{first}:{first + 16}", "-o", f"p{first}.film", "--threads", 1 + first // 16 % 2)
+        self.run_gischt("merge", "p48.film", "p0.film", "p32.film", "p16.film", "-o", "sum.exr")
+        self.run_gischt("compare", "sum.exr", "whole.exr", "--tol", 0)
+
+    def test_what_it_cannot_do_is_refused_by_name(self):
+        self.write("bulb.toml", """[[solid]]
+name = "bulb"
+type = "sphere"
+material = "dielectric"
+[solid.medium]
+extinction = 1
+[[light]]
+name = "candle"
+type = "point"
+position = [0, -2, 0]
+[render]
+method = "path"
+""")
+        error = self.run_gischt("render", "bulb.toml", "-o", "x.exr", status=2).stderr
+        for word in ("candle", "bulb", "no size", "sphere", "march"):
+            self.assertIn(word, error)
 
 
 if __name__ == "__main__":

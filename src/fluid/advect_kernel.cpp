@@ -84,7 +84,7 @@ HWY_INLINE Floats join_blocks(F block) {
     } else if constexpr (lanes == 8) {
         return hn::Combine(Tag(), block(1), block(0));
     } else {
-        const hn::FixedTag<float, 8> d;
+        const hn::Half<Tag> d;
         return hn::Combine(Tag(), hn::Combine(d, block(3), block(2)),
                            hn::Combine(d, block(1), block(0)));
     }

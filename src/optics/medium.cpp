@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/medium.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -51,6 +53,7 @@ Medium::Medium(const Frame& frame, const MediumParams& params, double time, Job&
     majorant_ = strength_ * density_scale_ * density_.max();
     if (density_.size() > 0) cell_size_ = density_.cell_size();
     if (is_emissive()) bound_emission();
+    check_bounds(params.density_field);
 }
 
 Medium::Medium(const Region& region, const MediumParams& params, double time, double temperature) {
@@ -80,6 +83,7 @@ Medium::Medium(const Region& region, const MediumParams& params, double time, do
     if (is_emissive()) {
         emission_majorant_ = bound_of_glow(density_scale_, glow_elsewhere_, glow_elsewhere_);
     }
+    check_bounds("region");
 }
 
 Medium::Medium(const Layer& layer, const MediumParams& params, double time) {
@@ -90,6 +94,19 @@ Medium::Medium(const Layer& layer, const MediumParams& params, double time) {
     shape_ = Shape::Layered;
     layer_ = layer;
     majorant_ = strength_ * density_scale_ * static_cast<float>(layer.greatest_density());
+    check_bounds("layer");
+}
+
+// Depths along a ray are to stay numbers.
+void Medium::check_bounds(const std::string& of) const {
+    constexpr float most = 1e30f;
+    if (majorant_ <= most && strength_ <= most && emission_majorant_ <= most) return;
+    throw Error(
+        ErrorKind::Input, "medium",
+        fmt::format("'{}' has an extinction of up to {:.3g} 1/m and glows with up to {:.3g} "
+                    "W/(m^3 sr); the most that can be reckoned with is {:.3g}",
+                    of, majorant_, emission_majorant_, most),
+        "lower density_scale, extinction or emission_scale");
 }
 
 void Medium::take(const MediumParams& params, double time) {
@@ -223,7 +240,7 @@ void Medium::densities(const MediumSegment& segment, std::span<const float> t, f
     }
     density_.along(segment.brick, segment.entry, segment.step, t.data(), static_cast<int>(t.size()),
                    out);
-    for (std::size_t i = 0; i < t.size(); ++i) out[i] *= density_scale_;
+    for (std::size_t i = 0; i < t.size(); ++i) out[i] = density_scale_ * std::max(out[i], 0.0f);
 }
 
 int Medium::cell_crossings_of(const MediumSegment& segment, float begin, float end,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "grid/brick_volume.h"
@@ -73,6 +75,7 @@ class Medium {
     // The density field of a frame, and its temperature or flame where that glows. Values below
     // zero and those that are not finite count as 0, colours above one as 1; the last two are
     // reported to the job. Throws Error{Input} when a field is missing, naming those there are.
+    // All media: Error{Input} where extinction or emission exceed 1e30.
     Medium(const Frame& frame, const MediumParams& params, double time, Job& job);
     // Density 1 inside a region, nothing outside. Emission by blackbody takes `temperature` in K.
     // Throws Error{Usage} when the region has no volume, or no end but a glow.
@@ -141,8 +144,10 @@ class Medium {
     // The same for one place, for trackers.
     float density_at(const MediumSegment& segment, float t) const {
         if (segment.brick >= 0) {
+            // Beside a voxel of 1e10 rounding may take an interpolated 1 below 0.
             return density_scale_ *
-                   density_.at_local(segment.brick, segment.entry + t * segment.step);
+                   std::max(density_.at_local(segment.brick, segment.entry + t * segment.step),
+                            0.0f);
         }
         if (!layer_) return density_scale_;
         return density_scale_ * density_on_run(layer_->profile(), layer_->is_round(), segment.entry,
@@ -172,6 +177,7 @@ class Medium {
 
     Interval inside(const Ray& ray) const;
     void take(const MediumParams& params, double time);
+    void check_bounds(const std::string& of) const;
     void bound_emission();
     float bound_of_glow(float density, float least, float most) const;
     Vec3f glow(float density, float value) const;

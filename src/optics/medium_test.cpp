@@ -315,6 +315,53 @@ TEST(Medium, SaysWhatIsWrongWithAFrame) {
     EXPECT_NE(warning.find("1 values that are not finite"), std::string::npos);
 }
 
+// What rounding to float would turn into infinity on the way.
+TEST(Medium, RefusesExtinctionsBeyondAllReckoning) {
+    Job job;
+    const Field dense = field_of({8, 8, 8}, {}, [](const Vec3d&) { return 1e30; });
+    const Region ball = Region::sphere({}, 1);
+    EXPECT_NO_THROW(Medium(frame_of("density", dense), grey(0.5, 0), 0, job));
+    EXPECT_NO_THROW(Medium(ball, grey(1e29, 0), 0));
+    for (const bool is_field : {false, true}) {
+        try {
+            if (is_field) {
+                Medium(frame_of("density", dense), grey(20, 0), 0, job);
+            } else {
+                Medium(ball, grey(1e32, 0), 0);
+            }
+            FAIL();
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::Input);
+            EXPECT_NE(std::string(e.what()).find(is_field ? "'density'" : "'region'"),
+                      std::string::npos)
+                << e.what();
+        }
+    }
+}
+
+// Beside a voxel of 1e12 the rounding of the others may be of either sign.
+TEST(Medium, IsNeverLessThanNothing) {
+    Job job;
+    Field field = field_of({8, 8, 8}, {}, [](const Vec3d&) { return 0.001; });
+    field.component[0].ref({4, 4, 4}) = 1e12f;
+    const Medium medium(frame_of("density", field), grey(1, 0), 0, job);
+    for (int i = 0; i < 200; ++i) {
+        const Ray ray{{0.02 * i + 2.5, 4.5, -5}, normalize(Vec3d(0.001 * i, 0.01, 1))};
+        SegmentWalk walk = medium.segments(ray);
+        MediumSegment s;
+        while (walk.next(s)) {
+            std::array<float, 50> t, density;
+            for (std::size_t k = 0; k < t.size(); ++k) {
+                t[k] = static_cast<float>(s.t0 - s.anchor +
+                                          (s.t1 - s.t0) * double(k) / double(t.size() - 1));
+                EXPECT_GE(medium.density_at(s, t[k]), 0);
+            }
+            medium.densities(s, t, density.data());
+            EXPECT_GE(*std::min_element(density.begin(), density.end()), 0);
+        }
+    }
+}
+
 TEST(Medium, IsNothingWhereItIsEmpty) {
     Job job;
     const Medium medium(

@@ -104,7 +104,7 @@ void SunDepth::sweep(const Medium& medium, int p) {
 }
 
 // Bilinear inside a plane.
-SunDepth::Node SunDepth::at(int plane, float u, float v) const {
+SunDepth::Mixed SunDepth::at(int plane, float u, float v) const {
     const int i = std::clamp(static_cast<int>(u), 0, nu_ - 2),
               j = std::clamp(static_cast<int>(v), 0, nv_ - 2);
     const Node* n = nodes_.data() + index(plane, i, j);
@@ -112,15 +112,17 @@ SunDepth::Node SunDepth::at(int plane, float u, float v) const {
     const auto mix = [&](float Node::*m) {
         return lerp(lerp(n[0].*m, n[1].*m, fu), lerp(n[nu_].*m, n[nu_ + 1].*m, fu), fv);
     };
-    return {mix(&Node::depth), mix(&Node::slope)};
+    const auto [least, most] =
+        std::minmax({n[0].depth, n[1].depth, n[nu_].depth, n[nu_ + 1].depth});
+    return {mix(&Node::depth), mix(&Node::slope), most - least};
 }
 
-float SunDepth::operator()(const Vec3d& point) const {
-    if (planes_.empty()) return 0;
+SunDepth::Found SunDepth::find(const Vec3d& point) const {
+    if (planes_.empty()) return {};
     Vec3d q = to_lattice_.point(point);
     if (!box_.contains(q)) {
         const Interval inside = clip({q, towards_}, box_);
-        if (inside.is_empty()) return 0;
+        if (inside.is_empty()) return {};
         q = q + inside.t0 * towards_;
     }
     // Where the ray through the point meets the planes before and behind it.
@@ -132,8 +134,8 @@ float SunDepth::operator()(const Vec3d& point) const {
                 &far = planes_[static_cast<std::size_t>(p) + 1];
     const float u = static_cast<float>(q[u_] - slope_u_ * w - low_u_) - near.shift_u;
     const float v = static_cast<float>(q[v_] - slope_v_ * w - low_v_) - near.shift_v;
-    const Node a = at(p, u, v);
-    const Node b =
+    const Mixed a = at(p, u, v);
+    const Mixed b =
         at(p + 1, u + static_cast<float>(far.step_u), v + static_cast<float>(far.step_v));
 
     // Cubic Hermite, which rounding and bilinear slopes may take slightly out of [a, b].
@@ -142,7 +144,8 @@ float SunDepth::operator()(const Vec3d& point) const {
     const float cubic =
         a.depth +
         t * (a.slope + t * (3 * d - 2 * a.slope - b.slope + t * (a.slope + b.slope - 2 * d)));
-    return std::clamp(cubic, std::min(a.depth, b.depth), std::max(a.depth, b.depth));
+    return {std::clamp(cubic, std::min(a.depth, b.depth), std::max(a.depth, b.depth)),
+            std::max(a.range, b.range)};
 }
 
 }  // namespace gischt

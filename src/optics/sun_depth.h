@@ -21,7 +21,12 @@ class SunDepth {
     SunDepth(const Medium& medium, const Vec3d& towards, double spacing, Job& job);
 
     // Metres times density from a point in metres to the light; 0 outside of the shadow.
-    float operator()(const Vec3d& point) const;
+    float operator()(const Vec3d& point) const { return find(point).depth; }
+    // The same with the range of the depths that it was interpolated from, across the light.
+    struct Found {
+        float depth = 0, range = 0;
+    };
+    Found find(const Vec3d& point) const;
     std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
 
   private:
@@ -36,7 +41,10 @@ class SunDepth {
 
     void make_planes();
     void sweep(const Medium& medium, int plane);
-    Node at(int plane, float u, float v) const;
+    struct Mixed {
+        float depth = 0, slope = 0, range = 0;
+    };
+    Mixed at(int plane, float u, float v) const;
     std::size_t index(int plane, int i, int j) const {
         return static_cast<std::size_t>(i) +
                static_cast<std::size_t>(nu_) *

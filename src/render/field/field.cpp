@@ -213,7 +213,7 @@ class FieldPicture {
         draw_legend(image_, {panel_.at.x + panel_.size.x + 8 * s, panel_.at.y}, panel_.size.y,
                     colormap_, range_, ticks_, style_);
         std::string title = quantity_.name;
-        std::string unit = quantity_.unit;
+        std::string unit(quantity_.unit);
         if (ticks_.exponent != 0) {
             unit = fmt::format("1e{}{}{}", ticks_.exponent, unit.empty() ? "" : " ", unit);
         }

@@ -12,7 +12,8 @@ namespace gischt {
 
 // A number per cell that can be shown: a field of a frame, or made from its velocity.
 struct Quantity {
-    std::string name, unit;  // unit is empty for a pure number
+    std::string name;
+    std::string_view unit;   // a literal; empty for a pure number
     const Field* field{};    // whose cells it lives in
     bool is_signed = false;  // both signs mean something: the colours are even around 0
     ColormapKind colormap = ColormapKind::Viridis;

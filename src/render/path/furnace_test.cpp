@@ -46,26 +46,14 @@ MediumPtr blocks(int n, double low, double high, const MediumParams& params, std
 }
 
 // Each of 4x4 pixels by itself.
-void expect_white(View view, const std::string& name, int batches = 32, int samples = 4,
+void expect_white(const View& view, const std::string& name, int batches = 32, int samples = 4,
                   const PathParams& params = {}, double rounding = 2e-5) {
-    Job job;
     constexpr int edge = 4;
-    const PathScene scene(view, params, job);
-    PathTracer tracer(scene, no_limit, false);
+    Traced traced(view, params, no_limit);
     for (int pixel = 0; pixel < edge * edge; ++pixel) {
         const int x = pixel % edge, y = pixel / edge;
-        const Estimate got = estimate(batches, [&](int batch) {
-            Vec3d sum;
-            for (int i = 0; i < samples; ++i) {
-                const PixelSampler numbers(static_cast<std::uint64_t>(batch), 1, x, y,
-                                           static_cast<std::uint32_t>(i));
-                const Vec2f at = numbers.two(0);
-                const Ray ray = view.camera.ray((x + double(at.x)) / edge * view.width(),
-                                                (y + double(at.y)) / edge * view.height());
-                sum += Vec3d(tracer(ray, 0.5f, numbers).radiance);
-            }
-            return sum / Vec3d(samples);
-        });
+        const Estimate got =
+            mean_of_part(view, traced.seen(), x, y, edge, {.batches = batches, .samples = samples});
         for (int c = 0; c < 3; ++c) {
             expect_mean(got, c, 1, 3 * edge * edge, fmt::format("{} pixel {} {}", name, x, y),
                         rounding);

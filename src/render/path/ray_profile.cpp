@@ -11,6 +11,8 @@
 namespace gischt {
 namespace {
 
+constexpr float enough = 24;           // optical depth, behind which nothing is seen
+constexpr int most_halvings = 16;      // float resolves no finer parts of a cell
 constexpr float gauss = 0.211324865f;  // (1 - 1/sqrt(3)) / 2
 
 Vec3f negative_exp(const Vec3f& depth, bool is_grey) {
@@ -34,7 +36,6 @@ float partial_integral(const ActiveMedium& a, float begin, float s) {
 
 void RayProfile::trace(std::span<const Medium* const> media, const Ray& ray, bool is_grey,
                        std::int64_t& lookups) {
-    constexpr float enough = 24;
     is_grey_ = is_grey;
     channels_ = 0;
     depth_ = {};
@@ -83,7 +84,7 @@ void RayProfile::add_run(const MediaRun& run, std::int64_t& lookups) {
     float begin = 0;
     for (const float end : edges_) {
         if (!(end > begin)) continue;
-        pieces_.push_back({run.t0 + static_cast<double>(begin), end - begin, run_index, {}, {}});
+        pieces_.push_back({run.t0 + static_cast<double>(begin), end - begin, run_index, {}, {}, 0});
         begin = end;
     }
     const std::size_t count = pieces_.size() - first;
@@ -104,11 +105,53 @@ void RayProfile::add_run(const MediaRun& run, std::int64_t& lookups) {
             pieces_[first + i].extinction += (densities_[2 * i] + densities_[2 * i + 1]) * half;
         }
     }
+    const bool has_thick = std::any_of(pieces_.begin() + static_cast<std::ptrdiff_t>(first),
+                                       pieces_.end(), [](const Piece& p) { return is_thick(p); });
+    if (has_thick) return add_thick(first, lookups);
     for (std::size_t i = first; i < pieces_.size(); ++i) {
         Piece& p = pieces_[i];
         p.depth = depth_;
         depth_ += p.length * p.extinction;
     }
+}
+
+// The same where a cell is so thick that its mean extinction tells little about where light
+// comes from: it is halved until the halves are alike, as far as anything of it is seen.
+void RayProfile::add_thick(std::size_t first, std::int64_t& lookups) {
+    const auto begin = pieces_.begin() + static_cast<std::ptrdiff_t>(first);
+    thick_.assign(std::make_reverse_iterator(pieces_.end()), std::make_reverse_iterator(begin));
+    pieces_.resize(first);
+    while (!thick_.empty()) {
+        Piece p = thick_.back();
+        thick_.pop_back();
+        if (p.halvings < most_halvings && is_thick(p) && min_component(depth_) < enough) {
+            Piece near = p, far = p;
+            near.halvings = ++far.halvings;
+            near.length = far.length = 0.5f * p.length;
+            far.t0 += static_cast<double>(near.length);
+            near.extinction = mean_extinction(near, lookups);
+            far.extinction = mean_extinction(far, lookups);
+            if (max_component(abs(near.extinction - far.extinction)) * near.length > 0.25f) {
+                thick_.push_back(far);
+                thick_.push_back(near);
+                continue;
+            }
+        }
+        p.depth = depth_;
+        depth_ += p.length * p.extinction;
+        pieces_.push_back(p);
+    }
+}
+
+Vec3f RayProfile::mean_extinction(const Piece& p, std::int64_t& lookups) const {
+    Vec3f sum;
+    for (const ActiveMedium& a : active(p)) {
+        const auto begin = static_cast<float>(p.t0 - a.segment.anchor);
+        sum += (partial_integral(a, begin, p.length) / p.length) *
+               a.medium->cross_sections().extinction();
+        lookups += 2;
+    }
+    return sum;
 }
 
 // The density with which points() draws places, at s from the beginning of a piece: the mean over

@@ -56,12 +56,16 @@ class RayProfile {
         std::uint32_t run = 0;
         Vec3f depth;       // before it
         Vec3f extinction;  // mean, 1/m
+        int halvings = 0;  // see add_thick()
     };
+    static bool is_thick(const Piece& p) { return p.length * max_component(p.extinction) > 1; }
     std::span<const ActiveMedium> active(const Piece& piece) const {
         const Run& run = runs_[piece.run];
         return {active_.data() + run.first, run.count};
     }
     void add_run(const MediaRun& run, std::int64_t& lookups);
+    void add_thick(std::size_t first, std::int64_t& lookups);
+    Vec3f mean_extinction(const Piece& p, std::int64_t& lookups) const;
     const Piece* find(double t) const;
     ProfilePoint make_point(const Piece& piece, double t, float pdf, float choose,
                             std::int64_t& lookups) const;
@@ -73,7 +77,7 @@ class RayProfile {
     int channels_ = 0;              // their number
     std::vector<Run> runs_;
     std::vector<ActiveMedium> active_;
-    std::vector<Piece> pieces_;
+    std::vector<Piece> pieces_, thick_;
     std::vector<float> edges_, t_, densities_;
 };
 

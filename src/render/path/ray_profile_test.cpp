@@ -207,5 +207,35 @@ TEST(RayProfile, WeightsSumUpToTheOpacity) {
     }
 }
 
+// However thick the cells, no point weighs much more than its share: a density that is a cubic, and
+// not below zero, is at most 4 times its mean, and halves of a piece that differ by no more than an
+// optical depth of 1/4 bend its transmittance by less than exp(1/2).
+TEST(RayProfile, PointsInThickCellsWeighAlike) {
+    const auto grain = [](const Vec3d& p) {
+        const auto cell = [](double x) { return static_cast<std::uint64_t>((x + 1) * 8); };
+        const std::uint64_t key = random_key(2, cell(p.x), cell(p.y), cell(p.z));
+        return std::pow(10, 6 * double(random_uniform(key, 0)) - 2);
+    };
+    const MediumPtr rough = voxels(16, grain, coefficients(Vec3d(1), Vec3d(1)));
+    const Medium* media[] = {rough.get()};
+    RayProfile profile;
+    std::int64_t lookups = 0;
+    constexpr int n = 64, rays = 200;
+    for (std::uint64_t i = 0; i < rays; ++i) {
+        profile.trace(media, random_ray(i), true, lookups);
+        const double opacity = 1 - std::exp(-double(profile.depth().x));
+        const double bound = 4 * std::exp(0.5) * opacity / n;
+        std::vector<ProfilePoint> points;
+        profile.points(n, random_uniform(3, static_cast<std::uint32_t>(i)), 0.5f, points, lookups);
+        double sum = 0;
+        for (const ProfilePoint& p : points) {
+            EXPECT_LE(double(p.weight.x), bound * (1 + 1e-4)) << i;
+            sum += double(p.weight.x);
+        }
+        // Stratified: off by a few points' weights at most.
+        EXPECT_NEAR(sum, opacity, 6 * bound) << i;
+    }
+}
+
 }  // namespace
 }  // namespace gischt

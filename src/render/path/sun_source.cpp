@@ -21,13 +21,18 @@ float forward_depth(const SunSource& sun, const Vec3d& point,
 Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& towards,
                         const PathParams& params, Tracker& tracker, RandomStream& random) {
     const Ray ray{point, towards};
-    Vec3f depth;
+    Vec3f depth, doubt;
     for (std::size_t m = 0; m < tracker.media.size(); ++m) {
         const Medium& medium = *tracker.media[m];
-        const float integral =
-            sun.depth[m] ? (*sun.depth[m])(point)
-                         : static_cast<float>(exact_density_integral(medium, ray, tracker.lookups));
-        depth += integral * medium.cross_sections().extinction();
+        const Vec3f extinction = medium.cross_sections().extinction();
+        if (sun.depth[m]) {
+            const SunDepth::Found found = sun.depth[m]->find(point);
+            depth += found.depth * extinction;
+            doubt += found.range * extinction;
+        } else {
+            depth += static_cast<float>(exact_density_integral(medium, ray, tracker.lookups)) *
+                     extinction;
+        }
     }
     const Vec3f cached = tracker.is_grey
                              ? Vec3f(fast_exp(-depth.x))
@@ -36,7 +41,11 @@ Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& t
     // the depth: least in full light and in deep shadow. A tenth of the chance remains everywhere.
     const float largest = max_component(cached);
     const auto most = static_cast<float>(params.correction);
-    const float chance = most * std::clamp(4 * largest * (1 - largest), 0.1f, 1.0f);
+    float chance = most * std::clamp(4 * largest * (1 - largest), 0.1f, 1.0f);
+    // An exact transmittance below (1 - chance) times the cached one makes the result negative.
+    // Depths are wrong by less than half of the range that they were interpolated from; where that
+    // is a good part of 1 the medium is so dense that the exact one costs little.
+    chance = std::clamp(0.5f * (max_component(doubt) - 1), chance, 1.0f);
     if (random.next() >= chance) return cached;
     const Vec3f exact = tracker.transmittance(ray, TransmittanceEstimator::Exact, random);
     return cached + (exact - cached) * (1 / chance);

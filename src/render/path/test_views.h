@@ -82,23 +82,44 @@ struct Effort {
     std::uint64_t seed = 1;
 };
 
-// The mean radiance of the whole picture, as if it were one pixel.
-inline Estimate mean_radiance(const View& view, const PathParams& params, const Effort& effort) {
-    Job job;
-    const PathScene scene(view, params, job);
-    PathTracer tracer(scene, effort.depth, false);
+// The mean of what rays through part (x, y) of a picture cut into edge x edge parts see.
+using Seen = std::function<Vec3d(const Ray&, const PixelSampler&)>;
+inline Estimate mean_of_part(const View& view, const Seen& seen, int x, int y, int edge,
+                             const Effort& effort) {
     return estimate(effort.batches, [&](int batch) {
+        const std::uint64_t key = random_key(effort.seed, static_cast<std::uint64_t>(batch));
         Vec3d sum;
         for (int i = 0; i < effort.samples; ++i) {
-            const PixelSampler numbers(random_key(effort.seed, static_cast<std::uint64_t>(batch)),
-                                       1, 0, 0, static_cast<std::uint32_t>(i));
+            const PixelSampler numbers(key, 1, x, y, static_cast<std::uint32_t>(i));
             const Vec2f place = numbers.two(0);
-            const Ray ray = view.camera.ray(static_cast<double>(place.x) * view.width(),
-                                            static_cast<double>(place.y) * view.height());
-            sum += Vec3d(tracer(ray, 0.5f, numbers).radiance);
+            const Ray ray = view.camera.ray((x + double(place.x)) / edge * view.width(),
+                                            (y + double(place.y)) / edge * view.height());
+            sum += seen(ray, numbers);
         }
         return sum / Vec3d(effort.samples);
     });
+}
+
+// A view ready to be traced.
+struct Traced {
+    Job job;
+    PathScene scene;
+    PathTracer tracer;
+
+    // Keeps references to both.
+    Traced(const View& view, const PathParams& params, int depth)
+        : scene(view, params, job), tracer(scene, depth, false) {}
+    Seen seen() {
+        return [this](const Ray& ray, const PixelSampler& numbers) {
+            return Vec3d(tracer(ray, 0.5f, numbers).radiance);
+        };
+    }
+};
+
+// The mean radiance of the whole picture.
+inline Estimate mean_radiance(const View& view, const PathParams& params, const Effort& effort) {
+    Traced traced(view, params, effort.depth);
+    return mean_of_part(view, traced.seen(), 0, 0, 1, effort);
 }
 
 // An orthographic camera that looks from `from` to the origin at a square of the given height.

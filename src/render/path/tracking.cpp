@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/fast_math.h"
+#include "render/path/dense_run.h"
 #include "render/path/media_walk.h"
 
 namespace gischt {
@@ -89,6 +90,7 @@ bool Tracker::choose_medium(const MediaRun& run, double t, int hero, float major
 
 bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& random,
                   Collision& end, Vec3f* emission) {
+    constexpr int most_nulls = 64;  // of one run, then it is cut into cells
     MediaWalk walk(media, ray, BrickGrain::Bricks);
     MediaRun run;
     float depth_to_go = exponential(random.leading());
@@ -96,7 +98,12 @@ bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& ra
         const float majorant = with_floor(run, is_emissive);
         if (majorant == 0) continue;
         double t = run.t0;
-        for (;;) {
+        for (int nulls = 0;; ++nulls) {
+            // The rest of the run by another estimator of the same; depth_to_go was not looked at.
+            if (nulls >= most_nulls && has_cells(run)) {
+                if (fly_by_cells(run, t, hero, weight, random, end, emission)) return true;
+                break;
+            }
             const double left = static_cast<double>(majorant) * (run.t1 - t);
             if (static_cast<double>(depth_to_go) >= left) {
                 depth_to_go -= static_cast<float>(left);
@@ -109,6 +116,53 @@ bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& ra
             }
             if (choose_medium(run, t, hero, majorant, random.next(), weight, end)) return true;
         }
+    }
+    return false;
+}
+
+// On from t without null collisions: the cell in which the hero's optical depth runs out, and the
+// place in it.
+bool Tracker::fly_by_cells(const MediaRun& run, double t, int hero, PathWeight& weight,
+                           RandomStream& random, Collision& end, Vec3f* emission) {
+    cells_of_run(run, t, cells_, lookups);
+    float depth_to_go = exponential(random.next());
+    const auto pass = [hero](const PathWeight& w, const Vec3f& depth) {
+        const Vec3f ratio = exp(Vec3f(depth[hero]) - depth);
+        return PathWeight{w.weight * ratio, w.rate * ratio};
+    };
+    for (const RunCell& cell : cells_) {
+        const bool collides = depth_to_go < cell.depth[hero];
+        float s = cell.length;
+        if (collides) {
+            float low = 0;
+            while (0.5f * (low + s) > low && 0.5f * (low + s) < s) {
+                const float middle = 0.5f * (low + s);
+                (depth_within_cell(run, cell, middle, lookups)[hero] < depth_to_go ? low : s) =
+                    middle;
+            }
+        }
+        // What glows counts at one place, if the flight comes there.
+        if (emission && is_emissive) {
+            const float place = random.next() * cell.length;
+            if (place < s) {
+                Vec3f depth = depth_within_cell(run, cell, place, lookups);
+                if (depth[hero] > depth_to_go) depth *= depth_to_go / depth[hero];
+                *emission += cell.length * pass(weight, depth).value() *
+                             emission_of(run, cell.t + static_cast<double>(place));
+            }
+        }
+        if (!collides) {
+            depth_to_go -= cell.depth[hero];
+            weight = pass(weight, cell.depth);
+            continue;
+        }
+        const double at = cell.t + static_cast<double>(s);
+        const float total = extinction_at(run, at)[hero];
+        if (total == 0) continue;  // beside a leap that is finer than what t resolves
+        // So may be the depth there: it is to be the drawn one.
+        const Vec3f depth = depth_within_cell(run, cell, s, lookups);
+        weight = pass(weight, depth * (depth_to_go / depth[hero]));
+        if (choose_medium(run, at, hero, total, random.next(), weight, end)) return true;
     }
     return false;
 }
@@ -139,38 +193,52 @@ Vec3f Tracker::transmittance(const Ray& ray, TransmittanceEstimator estimator,
                                    estimator == TransmittanceEstimator::ResidualRatio, random);
 }
 
-// Ratio tracking (Novak, Selle, Jarosz 2014): the product of the chances of a null collision. With
-// the mean of each block as control, what remains is the residual around it.
+// The product of the chances of a null collision in a run, `control` apart.
+Vec3f Tracker::track_run(const MediaRun& run, const Vec3f& control, float majorant,
+                         float& depth_to_go, RandomStream& random) {
+    Vec3f product(1);
+    for (double t = run.t0;;) {
+        const double left = static_cast<double>(majorant) * (run.t1 - t);
+        if (static_cast<double>(depth_to_go) >= left) {
+            depth_to_go -= static_cast<float>(left);
+            return product;
+        }
+        t += static_cast<double>(depth_to_go / majorant);
+        depth_to_go = exponential(random.next());
+        lookups += static_cast<std::int64_t>(run.active.size());
+        product = product * (Vec3f(1) - (extinction_at(run, t) - control) / Vec3f(majorant));
+    }
+}
+
+// Ratio tracking (Novak, Selle, Jarosz 2014). With the mean of each block as control, what remains
+// is the residual around it.
 Vec3f Tracker::ratio_tracking(std::span<const Medium* const> tracked, const Ray& ray,
                               bool with_control, RandomStream& random) {
     constexpr float faint = 0.05f, survival = 0.25f;
+    // Expected in a run of 4^3 cells, which has at most 10 walls: from there on exact costs less.
+    constexpr float most_steps = 32;
     MediaWalk walk(tracked, ray);
     MediaRun run;
     Vec3f product(1), control_depth;
     float depth_to_go = exponential(random.next());
     while (walk.next(run)) {
         const bool is_flat = run.min == run.max;
-        float majorant = run.max;
-        Vec3f control;
-        if (with_control) {
+        const float residual = std::max(run.max - run.mean, run.mean - run.min);
+        const float majorant = !with_control ? run.max : is_flat ? 0 : residual;
+        const auto length = static_cast<float>(run.t1 - run.t0);
+        if (majorant * length > most_steps) {
+            control_depth += exact_depth_of_run(run, lookups);
+        } else {
+            Vec3f control;
             for (const ActiveMedium& a : run.active) {
                 const float mean = a.segment.mean / a.medium->strength();
-                if (a.segment.mean > 0) control += mean * a.medium->cross_sections().extinction();
+                if (with_control && a.segment.mean > 0) {
+                    control += mean * a.medium->cross_sections().extinction();
+                }
             }
-            control_depth += static_cast<float>(run.t1 - run.t0) * control;
-            majorant = is_flat ? 0 : std::max(run.max - run.mean, run.mean - run.min);
-        }
-        if (majorant == 0) continue;
-        for (double t = run.t0;;) {
-            const double left = static_cast<double>(majorant) * (run.t1 - t);
-            if (static_cast<double>(depth_to_go) >= left) {
-                depth_to_go -= static_cast<float>(left);
-                break;
-            }
-            t += static_cast<double>(depth_to_go / majorant);
-            depth_to_go = exponential(random.next());
-            lookups += static_cast<std::int64_t>(run.active.size());
-            product = product * (Vec3f(1) - (extinction_at(run, t) - control) / Vec3f(majorant));
+            control_depth += length * control;
+            if (majorant == 0) continue;
+            product = product * track_run(run, control, majorant, depth_to_go, random);
         }
         // Russian roulette of what is nearly dark.
         const float left = max_component(abs(product)) * fast_exp(-min_component(control_depth));
@@ -191,35 +259,6 @@ static float weakest_extinction(const Medium& medium) {
         if (extinction[c] > 0) weakest = std::min(weakest, extinction[c]);
     }
     return weakest;
-}
-
-// Integral of the density over [t0, t1] of a segment, in t.
-static double exact_integral(const Medium& medium, const MediumSegment& segment,
-                             std::int64_t& lookups) {
-    constexpr float gauss = 0.211324865f;  // (1 - 1/sqrt(3)) / 2
-    std::array<float, most_cell_crossings> edge;
-    std::array<float, 2 * most_cell_crossings + 2> t, density;
-    const auto last = static_cast<float>(segment.t1 - segment.anchor);
-    float begin = static_cast<float>(segment.t0 - segment.anchor);
-    const int n = medium.cell_crossings_of(segment, begin, last, edge);
-    std::size_t count = 0;
-    const auto end_of = [&](int i) { return i < n ? edge[static_cast<std::size_t>(i)] : last; };
-    for (int i = 0; i <= n; ++i) {
-        const float reach = end_of(i) - begin;
-        t[count++] = begin + gauss * reach;
-        t[count++] = begin + (1 - gauss) * reach;
-        begin += reach;
-    }
-    medium.densities(segment, {t.data(), count}, density.data());
-    lookups += static_cast<std::int64_t>(count);
-    begin = static_cast<float>(segment.t0 - segment.anchor);
-    float sum = 0;
-    for (int i = 0; i <= n; ++i) {
-        const auto k = static_cast<std::size_t>(2 * i);
-        sum += 0.5f * (end_of(i) - begin) * (density[k] + density[k + 1]);
-        begin = end_of(i);
-    }
-    return static_cast<double>(sum);
 }
 
 double exact_density_integral(const Medium& medium, const Ray& ray, std::int64_t& lookups) {

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include "render/path/dense_run.h"
 #include "render/path/media_walk.h"
 #include "render/path/path_params.h"
 #include "render/path/spectral.h"
@@ -26,7 +28,8 @@ struct Tracker {
 
     // Flies along a ray of unit direction until a collision with a medium, by null collisions
     // against the majorant of each 4^3 block (Woodcock et al. 1965); what lies below the block's
-    // minimum needs no look-up (decomposition tracking, Kutz et al. 2017). False where the ray
+    // minimum needs no look-up (decomposition tracking, Kutz et al. 2017); where null collisions
+    // pile up, cell by cell. False where the ray
     // leaves the media, or reaches t_max, first. The weight takes what depends on the channel; the
     // albedo stays for the caller (see scatter()). `hero` is the channel that decides. Emission on
     // the way is added to `emission`, where given, times the weight (in W/(m^2 sr)): the estimate
@@ -42,10 +45,16 @@ struct Tracker {
     Vec3f exact_depth(const Ray& ray);
 
   private:
+    bool fly_by_cells(const MediaRun& run, double t, int hero, PathWeight& weight,
+                      RandomStream& random, Collision& end, Vec3f* emission);
     bool choose_medium(const MediaRun& run, double t, int hero, float majorant, float u,
                        PathWeight& weight, Collision& end);
+    Vec3f track_run(const MediaRun& run, const Vec3f& control, float majorant, float& depth_to_go,
+                    RandomStream& random);
     Vec3f ratio_tracking(std::span<const Medium* const> tracked, const Ray& ray, bool with_control,
                          RandomStream& random);
+
+    std::vector<RunCell> cells_;
 };
 
 // The estimator of shadow rays for which there is no cache.
