@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/frame.h"
 #include "image/color.h"
 #include "math/fast_math.h"
 #include "optics/material.h"
@@ -34,7 +35,7 @@ float mean(const Vec3f& v) {
 
 PathTracer::PathTracer(const PathScene& scene, int depth, bool separates_lights)
     : scene_(scene), depth_(depth) {
-    tracker_.media = scene.media;
+    tracker_.media = scene.media_in(0);
     tracker_.is_grey = scene.is_grey;
     tracker_.is_emissive = scene.is_emissive;
     if (separates_lights) result_.of_light.resize(scene.view.lights.size());
@@ -49,6 +50,8 @@ const TracedRay& PathTracer::operator()(const Ray& ray, float moment, const Pixe
     result_.alpha = 1;
     moment_ = moment;
     camera_ray_ = ray;
+    tracker_.part = scene_.part_of(moment);
+    tracker_.media = scene_.media_in(tracker_.part);
     hero_ = scene_.is_grey ? 0 : static_cast<int>(3 * sampler.one(DimensionHero));
     if (scene_.has_interiors) {
         inside_.emplace(scene_.view.surfaces, ray.origin, moment);
@@ -115,8 +118,9 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         const Vec3d point = leg.ray.at(p.t);
         const Vec3f albedo = medium->cross_sections().scattering /
                              max(medium->cross_sections().extinction(), Vec3f(1e-30f));
-        note_first(mean(at.weight.weight), point, albedo, {});
-        direct_light({point, forward, medium, nullptr, nullptr}, at, random);
+        const Scatterer here{point, forward, medium, nullptr, nullptr};
+        note_first(mean(at.weight.weight), here, albedo, {});
+        direct_light(here, at, random);
     }
     // Paths go on from some of the points, evenly chosen.
     const auto n = static_cast<float>(points_.size());
@@ -139,14 +143,37 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
     }
 }
 
-// Depth, albedo and normal are those of the first scattering.
-void PathTracer::note_first(float share, const Vec3d& point, const Vec3f& albedo,
+// Depth, albedo, normal and motion are those of the first scattering.
+void PathTracer::note_first(float share, const Scatterer& at, const Vec3f& albedo,
                             const Vec3f& normal) {
-    const double t = dot(point - camera_ray_.origin, camera_ray_.direction);
+    if (shows_motion_) {
+        const Vec2f motion = motion_of(at);
+        result_.motion.x += share * motion.x;
+        result_.motion.y += share * motion.y;
+    }
+    const double t = dot(at.point - camera_ray_.origin, camera_ray_.direction);
     result_.depth += share * static_cast<float>(t);
     result_.opacity += share;
     result_.albedo += share * albedo;
     result_.normal += share * normal;
+}
+
+// From half a frame before the view's time to half a frame after it, in pixels.
+Vec2f PathTracer::motion_of(const Scatterer& at) const {
+    const View& view = scene_.view;
+    const double half = 0.5 * view.around->interval;
+    const double since = (static_cast<double>(moment_) - 0.5) * view.shutter;
+    if (at.hit) {
+        return picture_motion(*view.around,
+                              view.surfaces.carried_to(view.time - half, *at.hit, moment_),
+                              view.surfaces.carried_to(view.time + half, *at.hit, moment_));
+    }
+    Vec3d velocity;
+    if (const Field* field = scene_.velocity_of(at.medium)) {
+        for (int a = 0; a < 3; ++a) velocity[a] = static_cast<double>(field->sample(at.point, a));
+    }
+    return picture_motion(*view.around, at.point - (half + since) * velocity,
+                          at.point + (half - since) * velocity);
 }
 
 void PathTracer::deposit(const Vec3f& radiance, int events, int light) {
@@ -171,10 +198,10 @@ void PathTracer::cross(const SurfaceHit& hit) {
 
 void PathTracer::take_media() {
     if (!inside_ || inside_->surface() < 0) {
-        tracker_.media = scene_.media;
+        tracker_.media = scene_.media_in(tracker_.part);
         return;
     }
-    interior_ = inside_->medium();
+    interior_ = scene_.medium_in(tracker_.part, inside_->medium());
     tracker_.media = {&interior_, interior_ ? std::size_t{1} : 0};
 }
 

@@ -19,6 +19,7 @@ struct TracedRay {
     // Parts of the radiance: scattered once, more often, not at all but from something that glows.
     Vec3f direct, indirect, emission;
     Vec3f albedo, normal;         // of the first scattering, times the opacity
+    Vec2f motion;                 // of the same, in pixels per frame, where asked for
     Vec3f transmittance;          // of what lies in front of the background
     std::vector<Vec3f> of_light;  // by index in view.lights, where asked for
 };
@@ -45,6 +46,9 @@ class PathTracer {
     // counted.
     PathTracer(const PathScene& scene, int depth, bool separates_lights);
 
+    // Fills `motion`. The view must know the cameras around its frame.
+    void show_motion() { shows_motion_ = true; }
+
     const TracedRay& operator()(const Ray& ray, float moment, const PixelSampler& sampler);
 
     std::int64_t rays() const { return rays_; }
@@ -67,7 +71,8 @@ class PathTracer {
     void see(Leg leg, const PixelSampler& sampler);
     void see_through(const Leg& leg, const PixelSampler& sampler);
     bool shows(const Leg& leg, const SurfaceHit& hit, RandomStream& random);
-    void note_first(float share, const Vec3d& point, const Vec3f& albedo, const Vec3f& normal);
+    void note_first(float share, const Scatterer& at, const Vec3f& albedo, const Vec3f& normal);
+    Vec2f motion_of(const Scatterer& at) const;
 
     void follow(Leg leg, RandomStream& random);
     End fly(Leg& leg, RandomStream& random, Collision& collision, std::optional<SurfaceHit>& hit);
@@ -113,6 +118,7 @@ class PathTracer {
 
     const PathScene& scene_;
     int depth_;
+    bool shows_motion_ = false;
     int hero_ = 0;
     float moment_ = 0.5f;
     Ray camera_ray_;

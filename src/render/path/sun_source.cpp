@@ -11,11 +11,13 @@ Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& t
                         const PathParams& params, Tracker& tracker, RandomStream& random) {
     const Ray ray{point, towards};
     Vec3f depth;
+    const std::size_t first = static_cast<std::size_t>(tracker.part) * tracker.media.size();
     for (std::size_t m = 0; m < tracker.media.size(); ++m) {
         const Medium& medium = *tracker.media[m];
+        const auto& cache = sun.depth[first + m];
         const float integral =
-            sun.depth[m] ? (*sun.depth[m])(point)
-                         : static_cast<float>(exact_density_integral(medium, ray, tracker.lookups));
+            cache ? (*cache)(point)
+                  : static_cast<float>(exact_density_integral(medium, ray, tracker.lookups));
         depth += integral * medium.cross_sections().extinction();
     }
     const Vec3f cached = tracker.is_grey

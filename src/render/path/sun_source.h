@@ -16,8 +16,9 @@ struct SunSource {
     const Light* light = nullptr;
     int index = -1;   // in view.lights
     Vec3d direction;  // unit, towards its centre
-    // Optical depth towards it per unit of cross section, by medium; empty without cache.
-    std::vector<std::unique_ptr<const SunDepth>> depth;
+    // Optical depth towards it per unit of cross section, by part of the shutter's time, then by
+    // medium; empty without cache.
+    std::vector<std::shared_ptr<const SunDepth>> depth;
 
     bool is_cached() const { return !depth.empty(); }
 };

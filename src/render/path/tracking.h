@@ -22,6 +22,7 @@ struct Tracker {
     std::span<const Medium* const> media;
     bool is_grey = true;  // all channels of all media have the same extinction
     bool is_emissive = false;
+    int part = 0;  // of the shutter's time, to which the media belong
     std::int64_t lookups = 0;
 
     // Flies along a ray of unit direction until a collision with a medium, by null collisions
