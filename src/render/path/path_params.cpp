@@ -23,6 +23,11 @@ const Table<PathParams>& path_table() {
                   .max = 256})
             .add("splits", &PathParams::splits,
                  {.help = "How many of these points a path goes on from", .min = 1, .max = 256})
+            .add("equiangular", &PathParams::equiangular,
+                 {.help = "Further points of a camera ray, by the angle under which points, spots "
+                          "and lamps see it, at which only their light is taken (profile)",
+                  .min = 0,
+                  .max = 256})
             .add("halo", &PathParams::halo,
                  {.help = "Reach suns through one more scattering around their direction, against "
                           "sparkles of forward scattering"})

@@ -25,6 +25,7 @@ struct PathParams {
     CameraSegment camera = CameraSegment::Profile;
     int points = 8;           // of a camera ray with a profile, at which direct light is taken
     int splits = 4;           // of them from which paths go on
+    int equiangular = 4;      // more points of such a ray, for lights at finite places alone
     bool halo = true;         // suns are also reached through one scattering around their direction
     double correction = 0.1;  // chance that a cached transmittance is made exact
     double roulette = 0.1;    // paths weaker than this share of their start may end at random

@@ -58,6 +58,9 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
     }
     if (is_emissive && !has_interiors) glow = EmissionSampler(view.media);
     sort_lights(job);
+    for (const Drawn& d : local) {
+        if (d.light->place()) placed.push_back(d.light);
+    }
     refuse_what_none_can_meet();
 }
 

@@ -35,11 +35,12 @@ struct PathScene {
         const Light* light = nullptr;
         int index = -1;  // in view.lights; -1 for a surface
     };
-    std::vector<SunSource> suns;  // reached by sampling them only
-    std::vector<Drawn> local;     // at finite places
-    std::vector<Drawn> broad;     // at infinity, sampled and met by chance
-    std::vector<Drawn> even;      // the same from everywhere: met by chance only
-    EmissionSampler glow;         // media that glow; empty where surfaces have insides
+    std::vector<SunSource> suns;       // reached by sampling them only
+    std::vector<Drawn> local;          // at finite places
+    std::vector<const Light*> placed;  // those of them that have a place
+    std::vector<Drawn> broad;          // at infinity, sampled and met by chance
+    std::vector<Drawn> even;           // the same from everywhere: met by chance only
+    EmissionSampler glow;              // media that glow; empty where surfaces have insides
     // By surface: the light that it is, null where it cannot be sampled.
     std::vector<const SurfaceLight*> surface_light;
 

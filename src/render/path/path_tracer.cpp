@@ -19,6 +19,7 @@ enum : std::uint32_t {
     DimensionDistance = SampleDimension::Free,
     DimensionSplit,
     DimensionHero,
+    DimensionAngle,
     DimensionTurn,  // the first turns and flights of a path
     DimensionStream = 1000
 };
@@ -108,6 +109,7 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         profile_.points(scene_.params.points, u.x, u.y, points_, tracker_.lookups);
     }
     if (points_.empty()) return;
+    see_places(leg, sampler);
     RandomStream random = stream_of(sampler, 0);
     const auto forward = Vec3f(leg.ray.direction);
     for (const ProfilePoint& p : points_) {
@@ -120,7 +122,7 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
                              max(medium->cross_sections().extinction(), Vec3f(1e-30f));
         const Scatterer here{point, forward, medium, nullptr, nullptr};
         note_first(mean(at.weight.weight), here, albedo, {});
-        direct_light(here, at, random);
+        direct_light(here, at, random, profile_share(p.t));
     }
     // Paths go on from some of the points, evenly chosen.
     const auto n = static_cast<float>(points_.size());
@@ -141,6 +143,38 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         inside_ = inside;
         take_media();
     }
+}
+
+// The light of lights at finite places at further points of the ray, which are drawn about these;
+// weighed by the balance heuristic against the points of the profile.
+void PathTracer::see_places(const Leg& leg, const PixelSampler& sampler) {
+    const int n = scene_.params.equiangular;
+    if (n == 0 || scene_.placed.empty()) return;
+    angles_.aim(scene_.placed, leg.ray, profile_.begin(), profile_.end());
+    if (angles_.is_empty()) return;
+    const float u = sampler.one(DimensionAngle);
+    RandomStream random = stream_of(sampler, 3);
+    for (int i = 0; i < n; ++i) {
+        const double t = angles_.sample((static_cast<float>(i) + u) / static_cast<float>(n));
+        const float pdf = static_cast<float>(n) * angles_.density(t) +
+                          static_cast<float>(scene_.params.points) * profile_.density(t);
+        const ProfilePoint p = profile_.at(t, pdf, random.next(), tracker_.lookups);
+        if (!(max_component(p.weight) > 0)) continue;
+        Leg at = leg;
+        at.weight.weight = leg.weight.weight * p.weight;
+        at.events = 1;
+        from_local(
+            {leg.ray.at(t), Vec3f(leg.ray.direction), tracker_.media[p.medium], nullptr, nullptr},
+            at, random);
+    }
+}
+
+// What is left of their light for a point of the profile.
+float PathTracer::profile_share(double t) const {
+    if (scene_.params.equiangular == 0 || scene_.placed.empty() || angles_.is_empty()) return 1;
+    const float here = static_cast<float>(scene_.params.points) * profile_.density(t),
+                there = static_cast<float>(scene_.params.equiangular) * angles_.density(t);
+    return here / (here + there);
 }
 
 // Depth, albedo, normal and motion are those of the first scattering.

@@ -6,6 +6,7 @@
 
 #include "math/pixel_sampler.h"
 #include "optics/interior.h"
+#include "render/path/angle_sampler.h"
 #include "render/path/path_scene.h"
 #include "render/path/ray_profile.h"
 
@@ -70,6 +71,8 @@ class PathTracer {
 
     void see(Leg leg, const PixelSampler& sampler);
     void see_through(const Leg& leg, const PixelSampler& sampler);
+    float profile_share(double t) const;
+    void see_places(const Leg& leg, const PixelSampler& sampler);
     bool shows(const Leg& leg, const SurfaceHit& hit, RandomStream& random);
     void note_first(float share, const Scatterer& at, const Vec3f& albedo, const Vec3f& normal);
     Vec2f motion_of(const Scatterer& at) const;
@@ -82,7 +85,9 @@ class PathTracer {
     void go_on(const Scatterer& at, Leg& leg, RandomStream& random);
     bool survives(Leg& leg, RandomStream& random) const;
 
-    void direct_light(const Scatterer& at, const Leg& leg, RandomStream& random);
+    // `local_share`: of the light from finite places, the rest being found in another way.
+    void direct_light(const Scatterer& at, const Leg& leg, RandomStream& random,
+                      float local_share = 1);
     void from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, float factor,
                   RandomStream& random);
     void from_local(const Scatterer& at, const Leg& leg, RandomStream& random);
@@ -126,6 +131,7 @@ class PathTracer {
     const Medium* interior_ = nullptr;
     Tracker tracker_;
     RayProfile profile_;
+    AngleSampler angles_;
     std::vector<ProfilePoint> points_;
     TracedRay result_;
     std::int64_t rays_ = 0;
