@@ -9,6 +9,7 @@ const Table<PathParams>& path_table() {
             .choice("shadow", &PathParams::shadow,
                     {{"ratio", TransmittanceEstimator::Ratio},
                      {"residual_ratio", TransmittanceEstimator::ResidualRatio},
+                     {"march", TransmittanceEstimator::March},
                      {"exact", TransmittanceEstimator::Exact},
                      {"cached", TransmittanceEstimator::Cached}},
                     {.help = "How the transmittance towards lights is estimated; the choice "

@@ -9,6 +9,7 @@ namespace gischt {
 enum class TransmittanceEstimator {
     Ratio,          // ratio tracking against the majorants of 4^3 blocks (Novak et al. 2014)
     ResidualRatio,  // the blocks' means as control, the residual tracked
+    March,          // even steps, freed of their bias by a random term of a telescoping sum
     Exact,          // no noise: the optical depth integrated cell by cell
     Cached,         // from a grid towards suns, made exact at random (a debiased control variate)
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "render/path/march_estimate.h"
 #include "render/path/media_walk.h"
 #include "render/path/path_params.h"
 #include "render/path/spectral.h"
@@ -47,6 +48,8 @@ struct Tracker {
                        PathWeight& weight, Collision& end);
     Vec3f ratio_tracking(std::span<const Medium* const> tracked, const Ray& ray, bool with_control,
                          RandomStream& random);
+
+    MarchEstimate march_;
 };
 
 // The estimator of shadow rays for which there is no cache.
