@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct LightSample {
     double distance = std::numeric_limits<double>::infinity();  // metres to the light
     Vec3f weight;   // W/m^2: radiance / pdf, or the irradiance on a facing plane of a delta light
     float pdf = 0;  // 1/sr; 0 for a delta light, which no other sampler can hit
+};
+
+// The ball that holds a light at a finite place, metres; a radius of 0 for a point.
+struct LightPlace {
+    Vec3d center;
+    double radius = 0;
 };
 
 // A source of light at one moment. Immutable, safe to use from several threads.
@@ -40,6 +47,8 @@ class Light {
     // Mean over all directions of the light that arrives at a point (W/(m^2 sr)), without shadow:
     // fluence / 4 pi. For ambient terms and to choose among lights; exact.
     virtual Vec3f mean_radiance(const Vec3d& point) const = 0;
+    // Where it is; nothing for a light at infinity.
+    virtual std::optional<LightPlace> place() const { return std::nullopt; }
 
     std::string name;            // of the scene file; may be empty
     std::string group;           // of lights with a layer of the picture of their own; may be empty

@@ -18,6 +18,7 @@ class PointLight : public Light {
     bool is_delta() const override { return true; }
     bool is_infinite() const override { return false; }
     Vec3f mean_radiance(const Vec3d& point) const override;
+    std::optional<LightPlace> place() const override { return LightPlace{position_, 0}; }
 
   private:
     Vec3d position_;
@@ -38,6 +39,7 @@ class SpotLight : public Light {
     bool is_delta() const override { return true; }
     bool is_infinite() const override { return false; }
     Vec3f mean_radiance(const Vec3d& point) const override;
+    std::optional<LightPlace> place() const override { return LightPlace{position_, 0}; }
 
   private:
     Vec3d position_, axis_;

@@ -85,6 +85,9 @@ class SurfaceSet {
     // side over that on the ray's side, as InteriorStack tells; 0: the material's own against
     // vacuum. The set must outlive the result.
     Bsdf bsdf(const SurfaceHit& hit, double relative_ior = 0) const;
+    // Where the point of the surface that is hit at a moment is at another time, in metres: by its
+    // keyframes and the velocities of a mesh. Takes a transform or two.
+    Vec3d carried_to(double time, const SurfaceHit& hit, float moment) const;
     // The surfaces with an interior that a point lies in, outer before inner, each as often as it
     // does so (a mesh that overlaps itself may count twice).
     std::vector<int> interiors_at(const Vec3d& point, float moment = 0.5f) const;

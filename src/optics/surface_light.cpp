@@ -62,6 +62,9 @@ class SphereLight : public SurfaceLight {
     Vec3f mean_radiance(const Vec3d& point) const override {
         return emission_ * static_cast<float>(0.5 * one_minus_cos(sphere_.center - point));
     }
+    std::optional<LightPlace> place() const override {
+        return LightPlace{sphere_.center, sphere_.radius};
+    }
     double power() const override {
         return 4 * pi * pi * sphere_.radius * sphere_.radius *
                static_cast<double>(luminance(emission_));
@@ -130,6 +133,16 @@ class FaceLight : public SurfaceLight {
     }
     Vec3f mean_radiance(const Vec3d& point) const override {
         return emission_ * static_cast<float>(over_sphere * Seen(*this, point).solid_angle);
+    }
+    std::optional<LightPlace> place() const override {
+        Box3d box = Box3d::empty();
+        for (const Face& f : faces_) {
+            for (const Vec3d& p : {f.corner, f.corner + f.edge_x, f.corner + f.edge_y,
+                                   f.corner + f.edge_x + f.edge_y}) {
+                box.extend(p);
+            }
+        }
+        return LightPlace{0.5 * (box.lo + box.hi), 0.5 * length(box.size())};
     }
     double power() const override {
         double area = 0;
@@ -218,6 +231,9 @@ class DiscLight : public SurfaceLight {
         return emission_ *
                static_cast<float>(
                    over_sphere * disc_solid_angle(point, disc_.center, disc_.normal, disc_.radius));
+    }
+    std::optional<LightPlace> place() const override {
+        return LightPlace{disc_.center, disc_.radius};
     }
     double power() const override {
         return pi * pi * disc_.radius * disc_.radius * (both_sides_ ? 2 : 1) *
@@ -327,6 +343,7 @@ class MeshLight : public SurfaceLight {
         return emission_ *
                static_cast<float>(std::min(1.0, over_sphere * 0.5 * cumulative_.back() / r2));
     }
+    std::optional<LightPlace> place() const override { return LightPlace{middle_, reach_}; }
     double power() const override {
         return pi * cumulative_.back() * (both_sides_ ? 2 : 1) *
                static_cast<double>(luminance(emission_));

@@ -58,8 +58,8 @@ static void turn_into_files(Value& fluid) {
     const Value* file = fluid.find("file");
     const Value* type = fluid.find("type");
     if (!file || (type && type->is_string() && type->string() == "file")) return;
-    static const std::vector<std::string> kept{"name",           "medium", "translate",
-                                               "rotate_degrees", "scale",  "file"};
+    static const std::vector<std::string> kept{"name",  "medium", "translate",   "rotate_degrees",
+                                               "scale", "file",   "blur_moments"};
     std::erase_if(fluid.members(), [](const Value::Member& m) {
         return std::ranges::find(kept, m.key) == kept.end();
     });

@@ -20,7 +20,14 @@ const Table<FluidCommon>& common_table() {
                  {.unit = "degrees",
                   .help = "Turns the fluid about the origin: around x, then y, then z"})
             .add("scale", &P::scale,
-                 {.help = "Scales the fluid about the origin", .min = 0, .min_open = true});
+                 {.help = "Scales the fluid about the origin", .min = 0, .min_open = true})
+            .add(
+                "blur_moments", &P::blur_moments,
+                {.help = "Motion blur by the field velocity (method path): most moments at which "
+                         "the fluid is taken while the film is exposed, 3, 9 or 27 as half a voxel "
+                         "between them takes; 1: it stands still",
+                 .min = 1,
+                 .max = 255});
     return table;
 }
 

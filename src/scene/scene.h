@@ -32,6 +32,7 @@ struct FluidCommon {
     Vec3d translate{0, 0, 0};       // m, applied last
     Vec3d rotate_degrees{0, 0, 0};  // around x, then y, then z, about the origin
     double scale = 1;               // about the origin, applied first
+    int blur_moments = 9;           // most moments at which it is taken while the film is exposed
 
     Transform placement() const;
 };

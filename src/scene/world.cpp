@@ -9,6 +9,7 @@
 #include "io/image_file.h"
 #include "io/mesh_file.h"
 #include "optics/medium.h"
+#include "optics/moving_media.h"
 
 namespace gischt {
 namespace {
@@ -251,6 +252,30 @@ static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& f
     return out;
 }
 
+// The fluids' media while the film is exposed. One that needs fewer moments than another keeps each
+// for as many more: both are powers of three.
+void World::blur(View& view, Job& job) const {
+    if (!(view.shutter > 0) || scene_.render.method != "path") return;
+    std::vector<std::vector<std::shared_ptr<const Medium>>> by_fluid;
+    std::size_t parts = 1;
+    for (std::size_t i = 0; i < view.frames.size(); ++i) {
+        // What a procedure makes from nothing does not move.
+        const bool is_at_rest = std::holds_alternative<FluidOf<CloudParams>>(scene_.fluids[i]);
+        const FluidCommon& common = common_of(scene_.fluids[i]);
+        const Exposure exposure{view.time, view.shutter, is_at_rest ? 1 : common.blur_moments};
+        by_fluid.push_back(
+            media_while_exposed(*view.frames[i], view.media[i], common.medium, exposure, job));
+        parts = std::max(parts, by_fluid.back().size());
+    }
+    if (parts == 1) return;
+    view.moving_media.assign(parts, view.media);
+    for (std::size_t part = 0; part < parts; ++part) {
+        for (std::size_t i = 0; i < by_fluid.size(); ++i) {
+            view.moving_media[part][i] = by_fluid[i][part * by_fluid[i].size() / parts];
+        }
+    }
+}
+
 View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int frame, Job& job) {
     View view;
     view.frame = frame;
@@ -271,8 +296,14 @@ View World::view(const std::vector<std::shared_ptr<const Frame>>& frames, int fr
     }
     view.lights = lights_.at(view.time);
     view.shutter = scene_.film.shutter / scene_.fps;
-    view.camera = Camera(camera(view), view.time, scene_.film.width, scene_.film.height,
-                         scene_.up_vector(), view.shutter);
+    blur(view, job);
+    const auto camera_at = [&, params = camera(view)](double time, double shutter) {
+        return Camera(params, time, scene_.film.width, scene_.film.height, scene_.up_vector(),
+                      shutter);
+    };
+    view.camera = camera_at(view.time, view.shutter);
+    const double half = 0.5 / scene_.fps;
+    view.around = {camera_at(view.time - half, 0), camera_at(view.time + half, 0), 2 * half};
     // A colour map has frames and no media: nothing fills a surface then.
     SurfaceRig::Media media;
     for (std::size_t i = 0; i < frames.size(); ++i) {

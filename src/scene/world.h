@@ -35,6 +35,8 @@ class World {
     CameraParams camera(const View& view) const;
 
   private:
+    void blur(View& view, Job& job) const;
+
     const Scene& scene_;
     LightRig lights_;
     SurfaceRig surfaces_;

@@ -38,6 +38,7 @@ std::vector<NamedParams> alternatives() {
     add("residual ratio", plain(), [](PathParams& p) { p.shadow = Shadow::ResidualRatio; });
     add("exact", plain(), [](PathParams& p) { p.shadow = Shadow::Exact; });
     add("cached", plain(), [](PathParams& p) { p.shadow = Shadow::Cached; });
+    add("march", plain(), [](PathParams& p) { p.shadow = Shadow::March; });
     add("bridge", plain(), [](PathParams& p) { p.bridge = true; });
     add("profile of 1", {}, [](PathParams& p) {
         p = plain();

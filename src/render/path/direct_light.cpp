@@ -50,12 +50,17 @@ Vec3f PathTracer::shadow(const Scatterer& at, const Ray& ray, RandomStream& rand
     return product;
 }
 
-void PathTracer::direct_light(const Scatterer& at, const Leg& leg, RandomStream& random) {
+void PathTracer::direct_light(const Scatterer& at, const Leg& leg, RandomStream& random,
+                              float local_share) {
     // Later scatterings of a run are reached by bridges.
     if (!at.medium || leg.run == 1 || !has_bridges(*at.medium)) {
         for (const SunSource& sun : scene_.suns) from_sun(sun, at, leg, random);
     }
-    if (!scene_.local.empty()) from_local(at, leg, random);
+    if (!scene_.local.empty()) {
+        Leg local = leg;
+        local.weight.weight *= local_share;
+        from_local(at, local, random);
+    }
     if (!scene_.broad.empty()) from_broad(at, leg, random);
     if (!scene_.glow.is_empty()) from_glow(at, leg, random);
 }

@@ -13,13 +13,16 @@ namespace {
 
 constexpr float least_opacity = 0.01f;  // below, nothing was hit
 
-constexpr std::array filled_aovs{Aov::Direct, Aov::Indirect,      Aov::Emission, Aov::Albedo,
-                                 Aov::Normal, Aov::Transmittance, Aov::Variance, Aov::Samples};
+constexpr std::array filled_aovs{Aov::Motion,        Aov::Direct,   Aov::Indirect,
+                                 Aov::Emission,      Aov::Albedo,   Aov::Normal,
+                                 Aov::Transmittance, Aov::Variance, Aov::Samples};
 
 class PathWorker : public PixelWorker {
   public:
     PathWorker(const View& view, const PathScene& scene, int depth, const AovLayout& layout)
-        : view_(view), layout_(layout), tracer_(scene, depth, has_groups(layout)) {}
+        : view_(view), layout_(layout), tracer_(scene, depth, has_groups(layout)) {
+        if (layout.motion >= 0) tracer_.show_motion();
+    }
 
     void sample(const PixelSample& at, FilmSample& out, std::span<float> extra) override {
         const Ray ray = view_.camera.ray(at.film_x, at.film_y, at.lens, at.time);
@@ -37,6 +40,7 @@ class PathWorker : public PixelWorker {
         AovLayout::add(extra, layout_.emission, seen.emission);
         AovLayout::add(extra, layout_.albedo, seen.albedo);
         AovLayout::add(extra, layout_.normal, seen.normal);
+        AovLayout::add(extra, layout_.motion, seen.motion);
         AovLayout::add(extra, layout_.transmittance, seen.transmittance);
         for (std::size_t i = 0; i < seen.of_light.size(); ++i) {
             AovLayout::add(extra, layout_.light_group[i], seen.of_light[i]);
@@ -63,7 +67,10 @@ class PathMethod : public RenderMethod {
         const PathScene scene(view, params_, job);
         ProgressiveTask task;
         task.method = "path";
-        task.layout = aov_layout(view, settings, {"path", filled_aovs, true});
+        // Motion takes a view that knows the frames around it.
+        std::span<const Aov> aovs = filled_aovs;
+        if (!view.around) aovs = aovs.subspan(1);
+        task.layout = aov_layout(view, settings, {"path", aovs, true});
         task.make_worker = [&] {
             return std::make_unique<PathWorker>(view, scene, settings.depth, task.layout);
         };

@@ -9,6 +9,7 @@ const Table<PathParams>& path_table() {
             .choice("shadow", &PathParams::shadow,
                     {{"ratio", TransmittanceEstimator::Ratio},
                      {"residual_ratio", TransmittanceEstimator::ResidualRatio},
+                     {"march", TransmittanceEstimator::March},
                      {"exact", TransmittanceEstimator::Exact},
                      {"cached", TransmittanceEstimator::Cached}},
                     {.help = "How the transmittance towards lights is estimated; the choice "
@@ -23,6 +24,11 @@ const Table<PathParams>& path_table() {
                   .max = 256})
             .add("splits", &PathParams::splits,
                  {.help = "How many of these points a path goes on from", .min = 1, .max = 256})
+            .add("equiangular", &PathParams::equiangular,
+                 {.help = "Further points of a camera ray, by the angle under which points, spots "
+                          "and lamps see it, at which only their light is taken (profile)",
+                  .min = 0,
+                  .max = 256})
             .add("bridge", &PathParams::bridge,
                  {.help = "Reach suns through chains of scatterings that end in their direction, "
                           "against sparkles of forward scattering"})

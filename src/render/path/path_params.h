@@ -9,6 +9,7 @@ namespace gischt {
 enum class TransmittanceEstimator {
     Ratio,          // ratio tracking against the majorants of 4^3 blocks (Novak et al. 2014)
     ResidualRatio,  // the blocks' means as control, the residual tracked
+    March,          // even steps, freed of their bias by a random term of a telescoping sum
     Exact,          // no noise: the optical depth integrated cell by cell
     Cached,         // from a grid towards suns, made exact at random (a debiased control variate)
 };
@@ -23,9 +24,10 @@ enum class CameraSegment {
 struct PathParams {
     TransmittanceEstimator shadow = TransmittanceEstimator::Cached;
     CameraSegment camera = CameraSegment::Profile;
-    int points = 8;      // of a camera ray with a profile, at which direct light is taken
-    int splits = 4;      // of them from which paths go on
-    bool bridge = true;  // suns are reached through chains of turns that end in their direction
+    int points = 8;       // of a camera ray with a profile, at which direct light is taken
+    int splits = 4;       // of them from which paths go on
+    int equiangular = 4;  // more points of such a ray, for lights at finite places alone
+    bool bridge = true;   // suns are reached through chains of turns that end in their direction
     double correction = 0.1;  // chance that a cached transmittance is made exact
     double roulette = 0.1;    // paths weaker than this share of their start may end at random
     std::int64_t cache_nodes = 40'000'000;  // of one grid towards a sun

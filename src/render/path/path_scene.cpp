@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "grid/frame.h"
 #include "image/color.h"
 #include "optics/environment.h"
 #include "optics/local_lights.h"
@@ -42,6 +43,7 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
         is_emissive = is_emissive || m->is_emissive();
         if (!view.surfaces.is_interior(m.get())) media.push_back(m.get());
     }
+    take_motion();
     for (int i = 0; i < view.surfaces.size(); ++i) {
         const SurfaceInfo& info = view.surfaces.info(i);
         has_interiors = has_interiors || info.has_interior;
@@ -56,6 +58,9 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
     }
     if (is_emissive && !has_interiors) glow = EmissionSampler(view.media);
     sort_lights(job);
+    for (const Drawn& d : local) {
+        if (d.light->place()) placed.push_back(d.light);
+    }
     refuse_what_none_can_meet();
 }
 
@@ -99,13 +104,48 @@ void PathScene::sort_lights(Job& job) {
     }
 }
 
+void PathScene::take_motion() {
+    moving_.resize(std::max<std::size_t>(1, view.moving_media.size()));
+    for (std::size_t part = 0; part < moving_.size(); ++part) {
+        for (const Medium* m : media) {
+            moving_[part].push_back(medium_in(static_cast<int>(part), m));
+        }
+    }
+    for (std::size_t i = 0; i < std::min(view.frames.size(), view.media.size()); ++i) {
+        const Field* velocity = view.frames[i]->find("velocity");
+        if (!velocity || !velocity->is_vector()) continue;
+        velocity_[view.media[i].get()] = velocity;
+        for (const auto& media_then : view.moving_media) velocity_[media_then[i].get()] = velocity;
+    }
+}
+
+const Medium* PathScene::medium_in(int part, const Medium* middle) const {
+    if (view.moving_media.empty()) return middle;
+    const auto found = std::find_if(view.media.begin(), view.media.end(),
+                                    [=](const auto& m) { return m.get() == middle; });
+    if (found == view.media.end()) return middle;
+    const auto i = static_cast<std::size_t>(found - view.media.begin());
+    return view.moving_media[static_cast<std::size_t>(part)][i].get();
+}
+
+// A grid for each medium in each part of the shutter's time; together they have as many nodes as
+// that of one at rest may have.
 void PathScene::make_grids(SunSource& sun, Job& job) const {
-    for (const Medium* m : media) {
-        // What has no voxels is integrated at once.
-        sun.depth.push_back(m->cell_size() > 0 && m->strength() > 0
-                                ? std::make_unique<SunDepth>(
-                                      *m, sun.direction, spacing_of(*m, params.cache_nodes), job)
-                                : nullptr);
+    for (std::size_t part = 0; part < moving_.size(); ++part) {
+        for (std::size_t i = 0; i < media.size(); ++i) {
+            const Medium* m = moving_[part][i];
+            if (part > 0 && m == moving_[part - 1][i]) {
+                sun.depth.push_back(sun.depth[sun.depth.size() - media.size()]);
+            } else if (m->cell_size() > 0 && m->strength() > 0) {
+                const bool is_moving = m != moving_.back()[i] || part > 0;
+                const std::int64_t nodes =
+                    is_moving ? params.cache_nodes / parts() : params.cache_nodes;
+                sun.depth.push_back(std::make_shared<const SunDepth>(
+                    *m, sun.direction, spacing_of(*m, std::max<std::int64_t>(nodes, 1)), job));
+            } else {
+                sun.depth.push_back(nullptr);  // what has no voxels is integrated at once
+            }
+        }
     }
 }
 

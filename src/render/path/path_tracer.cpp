@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/frame.h"
 #include "image/color.h"
 #include "math/fast_math.h"
 #include "optics/material.h"
@@ -18,6 +19,7 @@ enum : std::uint32_t {
     DimensionDistance = SampleDimension::Free,
     DimensionSplit,
     DimensionHero,
+    DimensionAngle,
     DimensionTurn,  // the first turns and flights of a path
     DimensionStream = 1000
 };
@@ -34,7 +36,7 @@ float mean(const Vec3f& v) {
 
 PathTracer::PathTracer(const PathScene& scene, int depth, bool separates_lights)
     : scene_(scene), depth_(depth) {
-    tracker_.media = scene.media;
+    tracker_.media = scene.media_in(0);
     tracker_.is_grey = scene.is_grey;
     tracker_.is_emissive = scene.is_emissive;
     if (separates_lights) result_.of_light.resize(scene.view.lights.size());
@@ -49,6 +51,8 @@ const TracedRay& PathTracer::operator()(const Ray& ray, float moment, const Pixe
     result_.alpha = 1;
     moment_ = moment;
     camera_ray_ = ray;
+    tracker_.part = scene_.part_of(moment);
+    tracker_.media = scene_.media_in(tracker_.part);
     hero_ = scene_.is_grey ? 0 : static_cast<int>(3 * sampler.one(DimensionHero));
     if (scene_.has_interiors) {
         inside_.emplace(scene_.view.surfaces, ray.origin, moment);
@@ -105,6 +109,7 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         profile_.points(scene_.params.points, u.x, u.y, points_, tracker_.lookups);
     }
     if (points_.empty()) return;
+    see_places(leg, sampler);
     RandomStream random = stream_of(sampler, 0);
     const auto forward = Vec3f(leg.ray.direction);
     for (const ProfilePoint& p : points_) {
@@ -116,8 +121,9 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         const Vec3d point = leg.ray.at(p.t);
         const Vec3f albedo = medium->cross_sections().scattering /
                              max(medium->cross_sections().extinction(), Vec3f(1e-30f));
-        note_first(mean(at.weight.weight), point, albedo, {});
-        direct_light({point, forward, medium, nullptr, nullptr}, at, random);
+        const Scatterer here{point, forward, medium, nullptr, nullptr};
+        note_first(mean(at.weight.weight), here, albedo, {});
+        direct_light(here, at, random, profile_share(p.t));
     }
     // Paths go on from some of the points, evenly chosen.
     const auto n = static_cast<float>(points_.size());
@@ -141,14 +147,69 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
     }
 }
 
-// Depth, albedo and normal are those of the first scattering.
-void PathTracer::note_first(float share, const Vec3d& point, const Vec3f& albedo,
+// The light of lights at finite places at further points of the ray, which are drawn about these;
+// weighed by the balance heuristic against the points of the profile.
+void PathTracer::see_places(const Leg& leg, const PixelSampler& sampler) {
+    const int n = scene_.params.equiangular;
+    if (n == 0 || scene_.placed.empty()) return;
+    angles_.aim(scene_.placed, leg.ray, profile_.begin(), profile_.end());
+    if (angles_.is_empty()) return;
+    const float u = sampler.one(DimensionAngle);
+    RandomStream random = stream_of(sampler, 3);
+    for (int i = 0; i < n; ++i) {
+        const double t = angles_.sample((static_cast<float>(i) + u) / static_cast<float>(n));
+        const float pdf = static_cast<float>(n) * angles_.density(t) +
+                          static_cast<float>(scene_.params.points) * profile_.density(t);
+        const ProfilePoint p = profile_.at(t, pdf, random.next(), tracker_.lookups);
+        if (!(max_component(p.weight) > 0)) continue;
+        Leg at = leg;
+        at.weight.weight = leg.weight.weight * p.weight;
+        at.events = 1;
+        from_local(
+            {leg.ray.at(t), Vec3f(leg.ray.direction), tracker_.media[p.medium], nullptr, nullptr},
+            at, random);
+    }
+}
+
+// What is left of their light for a point of the profile.
+float PathTracer::profile_share(double t) const {
+    if (scene_.params.equiangular == 0 || scene_.placed.empty() || angles_.is_empty()) return 1;
+    const float here = static_cast<float>(scene_.params.points) * profile_.density(t),
+                there = static_cast<float>(scene_.params.equiangular) * angles_.density(t);
+    return here / (here + there);
+}
+
+// Depth, albedo, normal and motion are those of the first scattering.
+void PathTracer::note_first(float share, const Scatterer& at, const Vec3f& albedo,
                             const Vec3f& normal) {
-    const double t = dot(point - camera_ray_.origin, camera_ray_.direction);
+    if (shows_motion_) {
+        const Vec2f motion = motion_of(at);
+        result_.motion.x += share * motion.x;
+        result_.motion.y += share * motion.y;
+    }
+    const double t = dot(at.point - camera_ray_.origin, camera_ray_.direction);
     result_.depth += share * static_cast<float>(t);
     result_.opacity += share;
     result_.albedo += share * albedo;
     result_.normal += share * normal;
+}
+
+// From half a frame before the view's time to half a frame after it, in pixels.
+Vec2f PathTracer::motion_of(const Scatterer& at) const {
+    const View& view = scene_.view;
+    const double half = 0.5 * view.around->interval;
+    const double since = (static_cast<double>(moment_) - 0.5) * view.shutter;
+    if (at.hit) {
+        return picture_motion(*view.around,
+                              view.surfaces.carried_to(view.time - half, *at.hit, moment_),
+                              view.surfaces.carried_to(view.time + half, *at.hit, moment_));
+    }
+    Vec3d velocity;
+    if (const Field* field = scene_.velocity_of(at.medium)) {
+        for (int a = 0; a < 3; ++a) velocity[a] = static_cast<double>(field->sample(at.point, a));
+    }
+    return picture_motion(*view.around, at.point - (half + since) * velocity,
+                          at.point + (half - since) * velocity);
 }
 
 void PathTracer::deposit(const Vec3f& radiance, int events, int light) {
@@ -173,10 +234,10 @@ void PathTracer::cross(const SurfaceHit& hit) {
 
 void PathTracer::take_media() {
     if (!inside_ || inside_->surface() < 0) {
-        tracker_.media = scene_.media;
+        tracker_.media = scene_.media_in(tracker_.part);
         return;
     }
-    interior_ = inside_->medium();
+    interior_ = scene_.medium_in(tracker_.part, inside_->medium());
     tracker_.media = {&interior_, interior_ ? std::size_t{1} : 0};
 }
 

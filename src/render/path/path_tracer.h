@@ -7,6 +7,7 @@
 
 #include "math/pixel_sampler.h"
 #include "optics/interior.h"
+#include "render/path/angle_sampler.h"
 #include "render/path/path_scene.h"
 #include "render/path/ray_profile.h"
 
@@ -20,6 +21,7 @@ struct TracedRay {
     // Parts of the radiance: scattered once, more often, not at all but from something that glows.
     Vec3f direct, indirect, emission;
     Vec3f albedo, normal;         // of the first scattering, times the opacity
+    Vec2f motion;                 // of the same, in pixels per frame, where asked for
     Vec3f transmittance;          // of what lies in front of the background
     std::vector<Vec3f> of_light;  // by index in view.lights, where asked for
 };
@@ -45,6 +47,9 @@ class PathTracer {
     // `depth`: most scattering events of a path; mirrors and refractions of smooth surfaces are not
     // counted.
     PathTracer(const PathScene& scene, int depth, bool separates_lights);
+
+    // Fills `motion`. The view must know the cameras around its frame.
+    void show_motion() { shows_motion_ = true; }
 
     const TracedRay& operator()(const Ray& ray, float moment, const PixelSampler& sampler);
 
@@ -77,8 +82,11 @@ class PathTracer {
 
     void see(Leg leg, const PixelSampler& sampler);
     void see_through(const Leg& leg, const PixelSampler& sampler);
+    float profile_share(double t) const;
+    void see_places(const Leg& leg, const PixelSampler& sampler);
     bool shows(const Leg& leg, const SurfaceHit& hit, RandomStream& random);
-    void note_first(float share, const Vec3d& point, const Vec3f& albedo, const Vec3f& normal);
+    void note_first(float share, const Scatterer& at, const Vec3f& albedo, const Vec3f& normal);
+    Vec2f motion_of(const Scatterer& at) const;
 
     void follow(Leg leg, RandomStream& random);
     End fly(Leg& leg, RandomStream& random, Collision& collision, std::optional<SurfaceHit>& hit);
@@ -89,7 +97,9 @@ class PathTracer {
     static void count_run(Leg& leg, const Medium* medium);
     bool survives(Leg& leg, RandomStream& random) const;
 
-    void direct_light(const Scatterer& at, const Leg& leg, RandomStream& random);
+    // `local_share`: of the light from finite places, the rest being found in another way.
+    void direct_light(const Scatterer& at, const Leg& leg, RandomStream& random,
+                      float local_share = 1);
     void from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg, RandomStream& random);
     Vec3f sunlight(const SunSource& sun, const Scatterer& at, const LightSample& s,
                    RandomStream& random);
@@ -132,6 +142,7 @@ class PathTracer {
 
     const PathScene& scene_;
     int depth_;
+    bool shows_motion_ = false;
     int hero_ = 0;
     float moment_ = 0.5f;
     Ray camera_ray_;
@@ -139,6 +150,7 @@ class PathTracer {
     const Medium* interior_ = nullptr;
     Tracker tracker_;
     RayProfile profile_;
+    AngleSampler angles_;
     std::vector<ProfilePoint> points_;
     TracedRay result_;
     std::int64_t rays_ = 0;

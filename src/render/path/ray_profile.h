@@ -27,6 +27,9 @@ class RayProfile {
                std::int64_t& lookups);
 
     bool is_empty() const { return pieces_.empty(); }
+    // Where it begins and ends along the ray; not when it is empty.
+    double begin() const { return pieces_.front().t0; }
+    double end() const { return pieces_.back().t0 + static_cast<double>(pieces_.back().length); }
     // Optical depth per channel of all of it.
     const Vec3f& depth() const { return depth_; }
 

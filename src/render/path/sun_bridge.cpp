@@ -35,7 +35,7 @@ void PathTracer::set_out_bridges(const Scatterer& at, const Leg& leg, RandomStre
         constexpr float least = 0.03f;
         const Chain chain = chain_of(at, sun, memory, random);
         const float promise = static_cast<float>(4 * pi) * chain.value *
-                              std::exp(-forward_depth(sun, at.point, tracker_.media));
+                              std::exp(-forward_depth(sun, at.point, tracker_));
         const float chance = std::clamp(promise, least, 1.0f);
         if (random.next() < chance) bridge(at, leg, sun, chain, suns / chance, random);
     }

@@ -7,13 +7,14 @@
 
 namespace gischt {
 
-float forward_depth(const SunSource& sun, const Vec3d& point,
-                    std::span<const Medium* const> media) {
+float forward_depth(const SunSource& sun, const Vec3d& point, const Tracker& tracker) {
     float depth = 0;
-    for (std::size_t m = 0; m < media.size() && sun.is_cached(); ++m) {
-        if (!sun.depth[m]) continue;
-        depth +=
-            (*sun.depth[m])(point)*media[m]->strength() * (1 - media[m]->phase_lobes().mean_turn);
+    const std::size_t first = static_cast<std::size_t>(tracker.part) * tracker.media.size();
+    for (std::size_t m = 0; m < tracker.media.size() && sun.is_cached(); ++m) {
+        const Medium& medium = *tracker.media[m];
+        const auto& cache = sun.depth[first + m];
+        if (!cache) continue;
+        depth += (*cache)(point)*medium.strength() * (1 - medium.phase_lobes().mean_turn);
     }
     return depth;
 }
@@ -22,11 +23,12 @@ Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& t
                         const PathParams& params, Tracker& tracker, RandomStream& random) {
     const Ray ray{point, towards};
     Vec3f depth, doubt;
+    const std::size_t first = static_cast<std::size_t>(tracker.part) * tracker.media.size();
     for (std::size_t m = 0; m < tracker.media.size(); ++m) {
         const Medium& medium = *tracker.media[m];
         const Vec3f extinction = medium.cross_sections().extinction();
-        if (sun.depth[m]) {
-            const SunDepth::Found found = sun.depth[m]->find(point);
+        if (const auto& cache = sun.depth[first + m]) {
+            const SunDepth::Found found = cache->find(point);
             depth += found.depth * extinction;
             doubt += found.range * extinction;
         } else {

@@ -16,8 +16,9 @@ struct SunSource {
     const Light* light = nullptr;
     int index = -1;   // in view.lights
     Vec3d direction;  // unit, towards its centre
-    // Optical depth towards it per unit of cross section, by medium; empty without cache.
-    std::vector<std::unique_ptr<const SunDepth>> depth;
+    // Optical depth towards it per unit of cross section, by part of the shutter's time, then by
+    // medium; empty without cache.
+    std::vector<std::shared_ptr<const SunDepth>> depth;
 
     bool is_cached() const { return !depth.empty(); }
 };
@@ -25,7 +26,7 @@ struct SunSource {
 // How deep a point lies in the shadow of the media, for light that forward scattering carries on
 // its way: the sum of their optical depths (strongest channel) towards the sun times 1 - |mean
 // cosine|, from the cache, 0 where there is none. A guide, not an estimate.
-float forward_depth(const SunSource& sun, const Vec3d& point, std::span<const Medium* const> media);
+float forward_depth(const SunSource& sun, const Vec3d& point, const Tracker& tracker);
 
 // The transmittance from a point to a sun along `towards` (a direction within its disc), without
 // bias: from the cache that it must have, and with some chance p the exact one minus the cached one

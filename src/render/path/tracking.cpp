@@ -189,6 +189,10 @@ Vec3f Tracker::transmittance(const Ray& ray, TransmittanceEstimator estimator,
     }
     const Vec3f closed = dimmed(depth);
     if (count == 0 || max_component(closed) == 0) return closed;
+    if (estimator == TransmittanceEstimator::March) {
+        constexpr float steps = 1;  // see bench/transmittance_table
+        return closed * march_.transmittance({tracked.data(), count}, ray, steps, random, lookups);
+    }
     return closed * ratio_tracking({tracked.data(), count}, ray,
                                    estimator == TransmittanceEstimator::ResidualRatio, random);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/path/dense_run.h"
+#include "render/path/march_estimate.h"
 #include "render/path/media_walk.h"
 #include "render/path/path_params.h"
 #include "render/path/spectral.h"
@@ -24,6 +25,7 @@ struct Tracker {
     std::span<const Medium* const> media;
     bool is_grey = true;  // all channels of all media have the same extinction
     bool is_emissive = false;
+    int part = 0;  // of the shutter's time, to which the media belong
     std::int64_t lookups = 0;
 
     // Flies along a ray of unit direction until a collision with a medium, by null collisions
@@ -55,6 +57,7 @@ struct Tracker {
                          RandomStream& random);
 
     std::vector<RunCell> cells_;
+    MarchEstimate march_;
 };
 
 // The estimator of shadow rays for which there is no cache.

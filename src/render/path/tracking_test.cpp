@@ -111,7 +111,8 @@ TEST(PathTracking, EstimatorsOfTransmittanceHaveTheRightMean) {
             const Ray ray = random_ray(100 + i);
             const Vec3f depth = tracker.exact_depth(ray);
             for (const auto kind :
-                 {TransmittanceEstimator::Ratio, TransmittanceEstimator::ResidualRatio}) {
+                 {TransmittanceEstimator::Ratio, TransmittanceEstimator::ResidualRatio,
+                  TransmittanceEstimator::March}) {
                 float least = 1;
                 const Estimate got = estimate(4000, [&](int n) {
                     RandomStream random{random_key(8, i, static_cast<std::uint64_t>(n))};
@@ -119,10 +120,11 @@ TEST(PathTracking, EstimatorsOfTransmittanceHaveTheRightMean) {
                     least = std::min(least, min_component(t));
                     return Vec3d(t);
                 });
-                EXPECT_GE(least, 0);
+                // The march may go below, for the sake of the mean.
+                EXPECT_TRUE(kind == TransmittanceEstimator::March || least >= 0);
                 for (int c = 0; c < 3; ++c) {
                     expect_mean(got, c, std::exp(-std::min(double(depth[c]), 87.0)),
-                                6 * rays * 2 * 3,
+                                6 * rays * 3 * 3,
                                 fmt::format("{} media, ray {}, estimator {}, channel {}",
                                             media.size(), i, static_cast<int>(kind), c));
                 }

@@ -84,13 +84,13 @@ bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomS
     const Vec3d point = leg.ray.at(collision.t);
     const Vec3f albedo =
         collision.color * cross.scattering / max(cross.extinction(), Vec3f(1e-30f));
-    if (leg.events == 0 && leg.mirrors == 0) note_first(1, point, albedo, {});
+    const Scatterer at{point, Vec3f(leg.ray.direction), medium, nullptr, nullptr};
+    if (leg.events == 0 && leg.mirrors == 0) note_first(1, at, albedo, {});
     // fly() counted the extinction of each channel over that of the hero.
     leg.weight.weight = leg.weight.weight * albedo;
     ++leg.events;
     count_run(leg, medium);
     if (!survives(leg, random)) return false;
-    const Scatterer at{point, Vec3f(leg.ray.direction), medium, nullptr, nullptr};
     direct_light(at, leg, random);
     go_on(at, leg, random);
     return true;
@@ -118,8 +118,9 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
     const Vec3d out = -leg.ray.direction;
     if (is_first) {
         const Vec3f w = leg.weight.value();
-        note_first((w.x + w.y + w.z) / 3, hit.point, bsdf.albedo_estimate(out),
-                   Vec3f(hit.shading_normal));
+        note_first((w.x + w.y + w.z) / 3,
+                   {hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf},
+                   bsdf.albedo_estimate(out), Vec3f(hit.shading_normal));
     }
     if (!bsdf.is_delta_only()) {
         if (leg.events >= depth_) return false;
