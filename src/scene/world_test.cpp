@@ -80,5 +80,47 @@ TEST(World, ArrowsEndWhereTheFluidTakesThem) {
     EXPECT_LT(length(moved - placement.point(start + arrow)), 1e-5);
 }
 
+// 2.5 m, five voxels, while the film is exposed; beside a fluid that is slow.
+TEST(World, BlursFluidsByTheirVelocity) {
+    const auto frame_of = [](float speed, bool has_velocity) {
+        auto frame = std::make_shared<Frame>();
+        frame->fields["density"] = constant_field({1});
+        frame->fields["density"].background = {};
+        if (has_velocity) frame->fields["velocity"] = constant_field({speed, 0, 0});
+        return frame;
+    };
+    const std::string two = "[[fluid]]\ntype = \"file\"\nfile = \"a.vdb\"\n";
+    const auto scene_with = [&](const std::string& text) {
+        return load_scene_tree("test", parse_toml(text, "t"), "", {}).scene;
+    };
+    Job job;
+    const Scene scene =
+        scene_with("fps = 10\n" + two + two + "[film]\nshutter = 5\n[render]\nmethod = \"path\"\n");
+    const View view = World(scene, job).view({frame_of(5, true), frame_of(1, true)}, 1, job);
+    ASSERT_EQ(view.moving_media.size(), 9u);
+    EXPECT_EQ(view.moving_media[4], view.media);
+    EXPECT_NE(view.moving_media[0][0], view.moving_media[1][0]);
+    EXPECT_EQ(view.moving_media[0][1], view.moving_media[2][1]);  // three are enough for the slow
+    EXPECT_NE(view.moving_media[2][1], view.moving_media[3][1]);
+    // From [1, 5] m it is 4 / 9 of 2.5 m to the left at the first moment, to the right at the last;
+    // next to a sharp edge cubic interpolation overshoots by some per cent.
+    const auto density = [&](int part, double x) {
+        return view.moving_media[static_cast<std::size_t>(part)][0]->density({x, 2, 2});
+    };
+    EXPECT_EQ(density(4, 0.5), 0);
+    EXPECT_NEAR(density(0, 0.5), 1, 0.08);
+    EXPECT_EQ(density(0, 4.5), 0);
+    EXPECT_NEAR(density(8, 5.5), 1, 0.08);
+    ASSERT_TRUE(view.around);
+    EXPECT_NEAR(view.around->interval, 0.1, 1e-12);
+
+    const Scene march = scene_with("fps = 10\n" + two + "[film]\nshutter = 5\n");
+    EXPECT_TRUE(World(march, job).view({frame_of(5, true)}, 1, job).moving_media.empty());
+    const Scene still =
+        scene_with("fps = 10\n" + two +
+                   "blur_moments = 1\n[film]\nshutter = 5\n[render]\nmethod = \"path\"\n");
+    EXPECT_TRUE(World(still, job).view({frame_of(5, true)}, 1, job).moving_media.empty());
+}
+
 }  // namespace
 }  // namespace gischt
