@@ -238,17 +238,26 @@ void take_color(MeshFile& file, const aiScene& scene) {
     }
 }
 
-void report_color(const MeshFile& file, const std::string& path, Job& job) {
-    if (!file.base_color_file.empty()) {
-        job.info(fmt::format("{}: its picture '{}' is not used; give it as texture of the solid",
-                             path, file.base_color_file));
-    } else if (file.base_color) {
+// Keeps what can be used.
+void check_color(MeshFile& file, const std::string& path, Job& job) {
+    if (file.base_color) {
         const Vec3f& c = *file.base_color;
-        job.info(
-            fmt::format("{}: its colour ({:.3g}, {:.3g}, {:.3g}) is not used; give it as "
-                        "albedo of the solid",
-                        path, c.x, c.y, c.z));
+        if (!(min_component(c) >= 0 && max_component(c) <= 1)) {
+            job.warn(
+                fmt::format("{}: its colour ({:.3g}, {:.3g}, {:.3g}) is not from 0 to 1 and "
+                            "is not used; give albedo of the solid",
+                            path, c.x, c.y, c.z));
+            file.base_color = {};
+        }
     }
+    if (file.base_color_file.empty()) return;
+    if (file.base_color_file.front() == '*') {
+        job.warn(path + ": a picture packed into it is not used; give one as texture of the solid");
+        file.base_color_file.clear();
+        return;
+    }
+    const auto folder = std::filesystem::path(path).parent_path();
+    file.base_color_file = (folder / file.base_color_file).string();
 }
 
 }  // namespace
@@ -282,7 +291,7 @@ MeshFile read_mesh(const std::string& path, Job& job) {
         refuse(path, fmt::format("cannot be read ({})", e.what()));
     }
     if (file.mesh.triangles.empty()) refuse(path, "has no triangles");
-    report_color(file, path, job);
+    check_color(file, path, job);
     return file;
 }
 

@@ -15,16 +15,16 @@ namespace gischt {
 struct MeshFile {
     Mesh mesh;
     // Of the first part that names one.
-    std::optional<Vec3f> base_color;  // linear
-    std::string base_color_file;      // as written in the file; empty for none
+    std::optional<Vec3f> base_color;  // linear, in [0,1]
+    std::string base_color_file;      // path; empty for none
 };
 
 // ".obj", ".ply", ".gltf", ".glb".
 const std::vector<std::string>& mesh_extensions();
 
 // Reads one by extension. Throws Error{Usage} for another extension, listing the valid ones, and
-// Error{Input} for a file that is missing, broken or without triangles. Reports colours that it
-// names, as nobody takes them.
+// Error{Input} for a file that is missing, broken or without triangles. Warns of colours that
+// cannot be used: beyond 1, or pictures packed into the file.
 MeshFile read_mesh(const std::string& path, Job& job);
 
 }  // namespace gischt

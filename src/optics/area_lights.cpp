@@ -46,7 +46,7 @@ struct LampAt {
         const Vec3d emission = radiance * Vec3d(light_tint(p, time));
         if (!(max_component(emission) > 0)) return std::nullopt;
         s.name = p.name;
-        s.material.albedo = {};
+        s.material.albedo = Vec3d(0);
         s.material.emission = Keyed<Vec3d>(emission);
         s.material.camera_visible = p.camera_visible;
         return SurfaceParams(std::move(s));

@@ -30,7 +30,9 @@ struct TextureParams {
 // What a surface does to light, and what lies behind it.
 struct Material {
     MaterialKind kind = MaterialKind::Lambert;
-    Vec3d albedo{0.5, 0.5, 0.5};   // Lambert, plastic: share of light reflected, in [0,1]
+    // Lambert, plastic: share of light reflected, in [0,1]. Unset: what the file of a mesh says,
+    // else 0.5.
+    std::optional<Vec3d> albedo;
     Vec3d checker{0.5, 0.5, 0.5};  // albedo of every other field of a checker board
     double checker_size = 0;       // m, edge of a field; 0: no checker board
     std::optional<TextureParams> texture;

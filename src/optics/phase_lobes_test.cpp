@@ -100,8 +100,8 @@ TEST(PhaseLobes, ForgetAfterAsManyTurnsAsTheyAreForward) {
     };
     EXPECT_EQ(memory(0), 0);
     EXPECT_EQ(memory(0.35), 0);
-    EXPECT_EQ(memory(0.5), 1);    // 0.5^2 = 0.25
-    EXPECT_EQ(memory(0.8), 4);    // 0.8^5 = 0.328
+    EXPECT_EQ(memory(0.5), 1);  // 0.5^2 = 0.25
+    EXPECT_EQ(memory(0.8), 4);  // 0.8^5 = 0.328
     EXPECT_EQ(memory(-0.8), 4);
     EXPECT_EQ(memory(0.877), 7);  // 0.877^8 = 0.350
     EXPECT_EQ(memory(0.99), PhaseLobes::longest - 2);

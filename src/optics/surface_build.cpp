@@ -142,7 +142,7 @@ Vec3f base_color(const Material& m) {
         case MaterialKind::Dielectric:
             return m.color ? Vec3f(*m.color) : Vec3f(1);
         default:
-            return Vec3f(m.albedo);
+            return Vec3f(m.albedo.value_or(Vec3d(0.5)));
     }
 }
 

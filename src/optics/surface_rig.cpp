@@ -39,6 +39,17 @@ void report(const SurfaceParams& params, const MeshFaults& faults, bool is_close
     }
 }
 
+// The colour of a file, where the scene gives none.
+void take_color(SurfaceParams& solid, const SurfaceRig::ColoredMesh& loaded) {
+    Material& m = std::get<MeshSurface>(solid).material;
+    const bool takes = m.kind == MaterialKind::Lambert || m.kind == MaterialKind::Plastic;
+    if (!takes || m.albedo || m.texture) return;
+    if (loaded.color) m.albedo = Vec3d(*loaded.color);
+    if (loaded.picture.empty()) return;
+    if (!m.albedo) m.albedo = Vec3d(1);
+    m.texture = TextureParams{.file = loaded.picture};
+}
+
 }  // namespace
 
 struct SurfaceRig::Loaded {
@@ -64,7 +75,8 @@ void SurfaceRig::Loaded::load(Solid& solid, const MeshLoader& load_mesh,
         if (!load_mesh) {
             throw Error(ErrorKind::Usage, title(solid.params), "meshes cannot be read here");
         }
-        Mesh mesh = load_mesh(params->file, job);
+        ColoredMesh loaded = load_mesh(params->file, job);
+        Mesh& mesh = loaded.mesh;
         const MeshFaults faults = remove_faults(mesh);
         if (mesh.triangles.empty()) {
             throw Error(ErrorKind::Input, params->file, "has no triangle with an area");
@@ -79,6 +91,7 @@ void SurfaceRig::Loaded::load(Solid& solid, const MeshLoader& load_mesh,
             }
         }
         solid.sources.mesh = std::make_shared<const Mesh>(std::move(mesh));
+        take_color(solid.params, loaded);
     }
     if (const auto& texture = material_of(solid.params).texture) {
         if (!load_image) {

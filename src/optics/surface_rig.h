@@ -4,7 +4,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/job.h"
@@ -20,8 +22,17 @@ namespace gischt {
 // pictures are loaded once.
 class SurfaceRig {
   public:
+    // A mesh and the colour that its file gives it.
+    struct ColoredMesh {
+        ColoredMesh(Mesh the_mesh, std::optional<Vec3f> the_color = {},
+                    std::string the_picture = {})
+            : mesh(std::move(the_mesh)), color(the_color), picture(std::move(the_picture)) {}
+        Mesh mesh;
+        std::optional<Vec3f> color;  // linear, in [0,1]
+        std::string picture;         // path; multiplies the colour; empty for none
+    };
     // Read files; the door to them lies above this room.
-    using MeshLoader = std::function<Mesh(const std::string& file, Job& job)>;
+    using MeshLoader = std::function<ColoredMesh(const std::string& file, Job& job)>;
     using ImageLoader = std::function<Image(const std::string& file)>;
     using Media = std::map<std::string, std::shared_ptr<const Medium>>;
 

@@ -50,7 +50,7 @@ const Table<Material>& material_table() {
                 {.help = "What happens to light at the surface"})
             .add("albedo", &Material::albedo,
                  {.help = "Share of the light that is reflected; of plastic, by what lies below "
-                          "the coat",
+                          "the coat; without it what the file of a mesh says, else 0.5",
                   .min = 0,
                   .max = 1,
                   .broadcast = true})
@@ -67,7 +67,8 @@ const Table<Material>& material_table() {
                   .min = 0,
                   .broadcast = true})
             .sub("texture", &Material::texture, texture_table(),
-                 {.help = "A picture that multiplies albedo or color"})
+                 {.help = "A picture that multiplies albedo or color; without it that of the file "
+                          "of a mesh, where albedo is not given either"})
             .add("roughness", &Material::roughness,
                  {.help = "Of conductor, dielectric and plastic: below 0.01 smooth, 1 very rough; "
                           "the width of the microfacets' slopes is its square",

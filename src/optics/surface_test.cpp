@@ -198,6 +198,25 @@ TEST(Surface, MeshesMoveThroughTheShutter) {
     }
 }
 
+// What the file says counts where the scene says nothing.
+TEST(Surface, MeshesTakeTheColorOfTheirFile) {
+    MeshSurface mesh;
+    mesh.file = "red";
+    Job job;
+    const auto load = [](const std::string&, Job&) {
+        return SurfaceRig::ColoredMesh(cube_mesh(), Vec3f(0.9f, 0.2f, 0.1f));
+    };
+    const auto albedo = [&] {
+        const SurfaceSet set = SurfaceRig({mesh}, {}, {0, 0, 1}, load, {}, job).at(0, 0, {});
+        const auto hit = set.intersect(along({0.3, 0.4, 5}, {0, 0, -1}), 0.5f);
+        return set.bsdf(*hit).albedo_estimate({0, 0, 1});
+    };
+    EXPECT_NEAR(albedo().x, 0.9f, 1e-6f);
+    EXPECT_NEAR(albedo().z, 0.1f, 1e-6f);
+    mesh.material.albedo = Vec3d(0.3);
+    EXPECT_NEAR(albedo().x, 0.3f, 1e-6f);
+}
+
 TEST(Surface, MeshesReportWhatIsWrongWithThem) {
     MeshSurface mesh;
     mesh.name = "bowl";

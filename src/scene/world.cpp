@@ -160,13 +160,16 @@ void report_unmet_solids(const Scene& scene, const FluidSection& fluid, Job& job
     }
 }
 
+static SurfaceRig::ColoredMesh read_colored_mesh(const std::string& file, Job& job) {
+    MeshFile f = read_mesh(file, job);
+    return {std::move(f.mesh), f.base_color, std::move(f.base_color_file)};
+}
+
 World::World(const Scene& scene, Job& job)
     : scene_(scene),
       lights_(scene.lights, scene.up_vector(), read_image),
-      surfaces_(
-          scene.solids, scene.lights, scene.up_vector(),
-          [](const std::string& file, Job& loading) { return read_mesh(file, loading).mesh; },
-          read_image, job) {}
+      surfaces_(scene.solids, scene.lights, scene.up_vector(), read_colored_mesh, read_image, job) {
+}
 
 // Aims a camera that sees the whole box at what the media really show, and narrows its field to
 // that.
