@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <memory>
-
+#include "commands.h"
 #include "console.h"
-#include "scene_options.h"
 #include "studio/estimate.h"
 
 namespace gischt {
@@ -14,7 +12,7 @@ static std::string bytes_text(double bytes) {
                        : fmt::format("{:.1f} GB", bytes * 1e-9);
 }
 
-static int check_scene(const SceneOptions& options, CommandContext& context) {
+int check_scene(const SceneOptions& options, CommandContext& context) {
     const ResolvedOptions r = resolve(options, context);
     const Scene& scene = r.scene.scene;
     const int frames = r.order.frames.count();
@@ -38,19 +36,6 @@ static int check_scene(const SceneOptions& options, CommandContext& context) {
                duration_text(pictures));
     fmt::print("good\n");
     return 0;
-}
-
-// gischt check SCENE
-void add_check(CLI::App& app, CommandContext& context) {
-    auto options = std::make_shared<SceneOptions>();
-    CLI::App* sub = app.add_subcommand(
-        "check", "Validate a scene; print cells, memory, disk and time; run nothing");
-    sub->add_option("SCENE", options->target, "A scene file or a built-in scene")->required();
-    add_scene_flags(*sub, *options, true);
-    add_work_flags(*sub, context);
-    sub->callback([options, &context] {
-        context.action = [options, &context] { return check_scene(*options, context); };
-    });
 }
 
 }  // namespace gischt

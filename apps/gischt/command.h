@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,20 +27,5 @@ struct CommandContext {
     int verbose = 0;
     bool quiet = false;
 };
-
-// Declares -v, -q, --threads, --progress, --stats on a sub-command that works for long.
-void add_work_flags(CLI::App& app, CommandContext& context);
-
-// Each sub-command lives in a file of its own.
-void add_run(CLI::App& app, CommandContext& context);
-void add_sim(CLI::App& app, CommandContext& context);
-void add_render(CLI::App& app, CommandContext& context);
-void add_check(CLI::App& app, CommandContext& context);
-void add_info(CLI::App& app, CommandContext& context);
-void add_merge(CLI::App& app, CommandContext& context);
-void add_compare(CLI::App& app, CommandContext& context);
-void add_scenes(CLI::App& app, CommandContext& context);
-void add_doc(CLI::App& app, CommandContext& context);
-void add_methods(CLI::App& app, CommandContext& context);
 
 }  // namespace gischt

@@ -116,23 +116,4 @@ Console::~Console() {
     if (isatty(STDERR_FILENO)) std::fputs("\r\033[K", stderr);
 }
 
-void add_work_flags(CLI::App& app, CommandContext& context) {
-    app.add_option("--set", context.sets, "Override a scene parameter: a.b.c=VALUE (repeatable)")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
-    app.add_option("--threads", context.threads,
-                   "Threads; 0 means all cores; results do not depend on it")
-        ->check(CLI::Range(0, 4096));
-    app.add_option("--simd", context.simd,
-                   "Widest instruction set of the hot loops (default: what the processor has)")
-        ->check(CLI::IsMember({"auto", "baseline", "avx2", "avx512"}));
-    app.add_option("--progress", context.progress,
-                   "bar, plain, json, none (default: bar on a terminal)")
-        ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}));
-    app.add_option("--stats", context.stats_file, "Write the figures of the run to a JSON file")
-        ->type_name("FILE.json");
-    app.add_flag("-v,--verbose", context.verbose, "Print the time of each phase");
-    app.add_flag("-q,--quiet", context.quiet, "Say nothing but errors");
-}
-
 }  // namespace gischt

@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 
 #include "base/error.h"
-#include "command.h"
+#include "commands.h"
 #include "io/film_file.h"
 #include "io/image_file.h"
 #include "io/vdb.h"
@@ -80,6 +79,8 @@ void print_cache(const fs::path& folder) {
     }
 }
 
+}  // namespace
+
 int print_info(const std::string& target, Job& job) {
     const std::string extension = fs::path(target).extension().string();
     if (extension == ".vdb" || extension == ".nvdb")
@@ -93,21 +94,6 @@ int print_info(const std::string& target, Job& job) {
     else
         print_scene(target);
     return 0;
-}
-
-}  // namespace
-
-// gischt info FILE
-void add_info(CLI::App& app, CommandContext& context) {
-    auto target = std::make_shared<std::string>();
-    CLI::App* sub =
-        app.add_subcommand("info", "What is in a .vdb, an image, a film, a cache or a scene");
-    sub->add_option("FILE", *target,
-                    "A .vdb, .exr, .png, .hdr or .film file, a cache folder, or a scene")
-        ->required();
-    sub->callback([target, &context] {
-        context.action = [target, &context] { return print_info(*target, context.job); };
-    });
 }
 
 }  // namespace gischt

@@ -9,8 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/version.h"
-#include "command.h"
+#include "commands.h"
 
 namespace gischt {
 namespace {
@@ -37,16 +36,6 @@ std::string join_arguments(int argc, char** argv) {
     return line;
 }
 
-// CLI11 knows the commands; the nearest one is more useful than its list.
-void suggest_command(const CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return;
-    std::vector<std::string> names;
-    for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-    if (std::ranges::find(names, argv[1]) != names.end()) return;
-    throw Error(ErrorKind::Usage, "gischt", fmt::format("unknown command '{}'", argv[1]),
-                hint_for(argv[1], names));
-}
-
 // Holds the run-time dispatch to an instruction set, so that results can be compared between
 // machines.
 void pin_simd(const std::string& name) {
@@ -61,31 +50,7 @@ void pin_simd(const std::string& name) {
 int run(int argc, char** argv) {
     CommandContext context;
     context.command_line = join_arguments(argc, argv);
-    CLI::App app("gischt simulates liquids and gases and renders them, from preview to film",
-                 "gischt");
-    app.set_version_flag(
-        "--version",
-        fmt::format("gischt {}\nOpenVDB 10, OpenEXR 3, Highway; no window, no GPU", version));
-    app.require_subcommand(1);
-    add_run(app, context);
-    add_sim(app, context);
-    add_render(app, context);
-    add_check(app, context);
-    add_info(app, context);
-    add_merge(app, context);
-    add_compare(app, context);
-    add_scenes(app, context);
-    add_doc(app, context);
-    add_methods(app, context);
-
-    suggest_command(app, argc, argv);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& done) {
-        return app.exit(done);  // --help, --version
-    } catch (const CLI::ParseError& e) {
-        throw Error(ErrorKind::Usage, "gischt", e.what(), "see gischt --help");
-    }
+    if (const auto status = parse(argc, argv, context)) return *status;
     pin_simd(context.simd);
     const ThreadLimit threads(context.threads);
     return context.action();

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "base/error.h"
-#include "command.h"
+#include "commands.h"
 #include "io/image_file.h"
 #include "studio/film_keeper.h"
 
 namespace gischt {
 namespace {
 
-struct MergeOptions {
-    std::vector<std::string> films, outputs;
-};
-
-FilmFile merge_films(const std::vector<std::string>& paths) {
+FilmFile sum_of(const std::vector<std::string>& paths) {
     FilmFile sum = read_film(paths[0]);
     for (std::size_t i = 1; i < paths.size(); ++i) {
         const FilmFile part = read_film(paths[i]);
@@ -49,7 +43,9 @@ void write_merged(const std::string& path, const FilmFile& film) {
     write_image(path, image, options);
 }
 
-int merge(const MergeOptions& options, const std::string& command) {
+}  // namespace
+
+int merge_films(const MergeOptions& options, const std::string& command) {
     for (const std::string& path : options.outputs) {
         if (is_film_file(path) || is_image_file(path)) continue;
         std::vector<std::string> formats = image_extensions();
@@ -57,32 +53,13 @@ int merge(const MergeOptions& options, const std::string& command) {
         throw Error(ErrorKind::Usage, path, "has no extension that tells a format",
                     hint_for(path.substr(std::min(path.rfind('.'), path.size())), formats));
     }
-    FilmFile sum = merge_films(options.films);
+    FilmFile sum = sum_of(options.films);
     sum.metadata.set("command", command);
     for (const std::string& path : options.outputs) {
         write_merged(path, sum);
         fmt::print("{}\n", path);
     }
     return 0;
-}
-
-}  // namespace
-
-// gischt merge A.film B.film ... -o OUT
-void add_merge(CLI::App& app, CommandContext& context) {
-    auto options = std::make_shared<MergeOptions>();
-    CLI::App* sub = app.add_subcommand(
-        "merge", "Add films of different samples of one picture, or develop one");
-    sub->add_option("FILMS", options->films, "Films (.film) that `render --samples` wrote")
-        ->required();
-    sub->add_option("-o,--output", options->outputs,
-                    "Film (.film) or picture (.png, .exr, .hdr); repeatable")
-        ->required()
-        ->type_name("FILE")
-        ->allow_extra_args(false);
-    sub->callback([options, &context] {
-        context.action = [options, &context] { return merge(*options, context.command_line); };
-    });
 }
 
 }  // namespace gischt

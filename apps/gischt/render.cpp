@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "base/error.h"
+#include "commands.h"
 #include "console.h"
-#include "scene_options.h"
 
 namespace gischt {
 
@@ -19,7 +17,7 @@ static void choose_frames(const SceneOptions& options, ResolvedOptions& r, Job& 
     job.info(fmt::format("rendering frame {}; --frames chooses others", r.order.frames.last));
 }
 
-static int render_target(const SceneOptions& options, CommandContext& context) {
+int render_target(const SceneOptions& options, CommandContext& context) {
     const Console console(context);
     const double start = now_seconds();
     ResolvedOptions r = resolve(options, context);
@@ -34,31 +32,6 @@ static int render_target(const SceneOptions& options, CommandContext& context) {
     finish_statistics(statistics, context, start);
     for (const std::string& path : written) fmt::print("{}\n", path);
     return 0;
-}
-
-// gischt render SCENE|FILE.vdb|CACHE [-o IMAGE]
-void add_render(CLI::App& app, CommandContext& context) {
-    auto options = std::make_shared<SceneOptions>();
-    CLI::App* sub = app.add_subcommand(
-        "render", "Render one frame or a range of a scene, a .vdb file or a cache");
-    sub->add_option("TARGET", options->target,
-                    "A scene, a .vdb file (or pattern name_####.vdb), or a cache folder")
-        ->required();
-    sub->add_option(
-           "-o,--output", options->outputs,
-           "Picture (.png, .exr, .hdr), state to go on with (.film), movie (.mp4) or folder; "
-           "repeatable")
-        ->type_name("IMAGE")
-        ->allow_extra_args(false);
-    sub->add_option("--turntable", options->turntable, "This many views around the object")
-        ->check(CLI::Range(1, 100000));
-    sub->add_option("--cache", options->cache, "Folder that keeps simulated frames")
-        ->type_name("DIR");
-    add_scene_flags(*sub, *options, true);
-    add_work_flags(*sub, context);
-    sub->callback([options, &context] {
-        context.action = [options, &context] { return render_target(*options, context); };
-    });
 }
 
 }  // namespace gischt

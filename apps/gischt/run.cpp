@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <memory>
-
+#include "commands.h"
 #include "console.h"
-#include "scene_options.h"
 
 namespace gischt {
 
-static int run_scene(const SceneOptions& options, CommandContext& context) {
+int run_scene(const SceneOptions& options, CommandContext& context) {
     const Console console(context);
     const double start = now_seconds();
     ResolvedOptions r = resolve(options, context);
@@ -30,23 +28,7 @@ static int run_scene(const SceneOptions& options, CommandContext& context) {
     return 0;
 }
 
-// gischt run SCENE [-o DIR]
-void add_run(CLI::App& app, CommandContext& context) {
-    auto options = std::make_shared<SceneOptions>();
-    CLI::App* sub = app.add_subcommand("run", "Simulate, render every frame, write the movie");
-    sub->add_option("SCENE", options->target, "A scene file or a built-in scene")->required();
-    sub->add_option("-o,--output", options->outputs,
-                    "Folder of frames, pictures and movie (default: out/NAME)")
-        ->expected(1)
-        ->type_name("DIR");
-    add_scene_flags(*sub, *options, true);
-    add_work_flags(*sub, context);
-    sub->callback([options, &context] {
-        context.action = [options, &context] { return run_scene(*options, context); };
-    });
-}
-
-static int simulate_scene(const SceneOptions& options, CommandContext& context) {
+int simulate_scene(const SceneOptions& options, CommandContext& context) {
     const Console console(context);
     const double start = now_seconds();
     ResolvedOptions r = resolve(options, context);
@@ -61,22 +43,6 @@ static int simulate_scene(const SceneOptions& options, CommandContext& context) 
                r.order.cache->string(), statistics.frames.size(),
                duration_text(now_seconds() - start));
     return 0;
-}
-
-// gischt sim SCENE [-o CACHE]
-void add_sim(CLI::App& app, CommandContext& context) {
-    auto options = std::make_shared<SceneOptions>();
-    CLI::App* sub =
-        app.add_subcommand("sim", "Simulate only, one VDB per frame; goes on where it stopped");
-    sub->add_option("SCENE", options->target, "A scene file or a built-in scene")->required();
-    sub->add_option("-o,--output", options->outputs, "Folder of the frames (default: out/NAME)")
-        ->expected(1)
-        ->type_name("CACHE");
-    add_scene_flags(*sub, *options, false);
-    add_work_flags(*sub, context);
-    sub->callback([options, &context] {
-        context.action = [options, &context] { return simulate_scene(*options, context); };
-    });
 }
 
 }  // namespace gischt

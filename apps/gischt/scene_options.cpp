@@ -151,25 +151,4 @@ void finish_statistics(const RunStatistics& run, const CommandContext& context, 
     }
 }
 
-void add_scene_flags(CLI::App& app, SceneOptions& o, bool pictures) {
-    app.add_option("--frames", o.frames, "Which frames")->type_name("A-B[xSTEP]");
-    app.add_option("--seed", o.seed, "Another seed gives other random numbers");
-    app.add_flag("--restart", o.restart, "Throw away cached frames and films and start anew");
-    app.add_flag("--resume", o.resume,
-                 "Use cached frames and films and go on where they stop (the default)");
-    app.add_flag(
-        "--preview", o.preview,
-        "Half the cells along each edge, one sample per pixel; in a folder 'preview' of its own");
-    if (!pictures) return;
-    app.add_option("--method", o.method, "Render method, see `gischt methods`");
-    app.add_option("--size", o.size, "Size of the picture in pixels")->type_name("WxH");
-    app.add_option("--spp", o.spp, "Samples per pixel");
-    app.add_option("--samples", o.samples, "Range of sample indices, half-open")->type_name("A:B");
-    app.add_option("--noise", o.noise, "Stop at this estimated relative noise")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--time", o.time, "Stop after this time per picture: 90s, 10m, 2h");
-    app.add_option("--preset", o.preset, "A look for any volume: smoke, fire, cloud, steam, fog");
-    app.add_option("--exposure", o.exposure, "Brightness of PNG and MP4 in stops")->type_name("EV");
-}
-
 }  // namespace gischt

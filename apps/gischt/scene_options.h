@@ -22,9 +22,6 @@ struct SceneOptions {
     bool preview = false, restart = false, resume = false;
 };
 
-// Declares the flags: what is simulated, and with `pictures` also how it is looked at.
-void add_scene_flags(CLI::App& app, SceneOptions& options, bool pictures);
-
 // What the flags and the target mean.
 struct ResolvedOptions {
     LoadedScene scene;

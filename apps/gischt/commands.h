@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "scene_options.h"
+
+namespace gischt {
+
+// Reads the command line into the context, whose `action` then runs the sub-command. A value is
+// the exit status of what is done already: --help, --version. Throws Error{Usage}.
+std::optional<int> parse(int argc, char** argv, CommandContext& context);
+
+struct MergeOptions {
+    std::vector<std::string> films, outputs;
+};
+struct CompareOptions {
+    std::string a, b;
+    std::optional<double> tolerance;  // of the RMSE
+};
+struct DocOptions {
+    std::string address;
+    bool markdown = false, json_schema = false;
+};
+
+// The sub-commands, each in a file of its own; they return the exit status.
+int run_scene(const SceneOptions& options, CommandContext& context);
+int simulate_scene(const SceneOptions& options, CommandContext& context);
+int render_target(const SceneOptions& options, CommandContext& context);
+int check_scene(const SceneOptions& options, CommandContext& context);
+int print_info(const std::string& target, Job& job);
+int merge_films(const MergeOptions& options, const std::string& command);
+int compare_images(const CompareOptions& options);
+int print_scenes(const std::string& name);
+int print_doc(const DocOptions& options);
+int print_methods();
+
+}  // namespace gischt
