@@ -20,6 +20,9 @@ struct ResolutionOf {
     Found operator()(const FluidOf<CloudParams>& f) const {
         return {"resolution", f.source.resolution};
     }
+    Found operator()(const FluidOf<ProceduralParams>& f) const {
+        return {"resolution", f.source.resolution};
+    }
     Found operator()(const FluidOf<FileParams>&) const { return {}; }
 };
 
