@@ -74,4 +74,44 @@ float cellular_noise(const Vec3d& p, std::uint64_t seed) {
     return static_cast<float>(std::sqrt(nearest));
 }
 
+// An edge direction of a cube by a number below 12, as edge_gradient() has them.
+static Vec3d edge_direction(std::uint64_t edge) {
+    const double a = edge & 1 ? -1 : 1, b = edge & 2 ? -1 : 1;
+    return edge < 4 ? Vec3d(a, b, 0) : edge < 8 ? Vec3d(a, 0, b) : Vec3d(0, a, b);
+}
+
+Vec3d curl_of_noise(const Vec3d& p, std::uint64_t seed) {
+    const Vec3i c = floor(p);
+    const Vec3d f = p - Vec3d(c);
+    // Weights of the lower and the upper corner along each axis, and their slopes.
+    double weight[3][2], slope[3][2];
+    for (int a = 0; a < 3; ++a) {
+        const double t = f[a], fade = t * t * t * (t * (t * 6 - 15) + 10),
+                     rise = 30 * t * t * (1 - t) * (1 - t);
+        weight[a][0] = 1 - fade;
+        weight[a][1] = fade;
+        slope[a][0] = -rise;
+        slope[a][1] = rise;
+    }
+    Vec3d curl;
+    for (int k = 0; k < 2; ++k) {
+        for (int j = 0; j < 2; ++j) {
+            for (int i = 0; i < 2; ++i) {
+                // Each corner gives the potential w N(d), N(d) = (g0.d, g1.d, g2.d), whose curl is
+                // grad w x N + w curl N.
+                const std::uint64_t hash = lattice_hash(c.x + i, c.y + j, c.z + k, seed);
+                const Vec3d g0 = edge_direction((hash & 0xfffff) % 12),
+                            g1 = edge_direction((hash >> 20 & 0xfffff) % 12),
+                            g2 = edge_direction((hash >> 40 & 0xfffff) % 12);
+                const Vec3d d = f - Vec3d(Vec3i(i, j, k));
+                const double x = weight[0][i], y = weight[1][j], z = weight[2][k];
+                const Vec3d gradient(slope[0][i] * y * z, x * slope[1][j] * z, x * y * slope[2][k]);
+                curl += cross(gradient, Vec3d(dot(g0, d), dot(g1, d), dot(g2, d))) +
+                        (x * y * z) * Vec3d(g2.y - g1.z, g0.z - g2.x, g1.x - g0.y);
+            }
+        }
+    }
+    return curl;
+}
+
 }  // namespace gischt
