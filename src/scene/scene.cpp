@@ -46,7 +46,8 @@ const Variants<FluidSection>& fluid_variants() {
                                "A fluid: where its motion comes from and what it does to light")
             .add("smoke", fluid_table(smoke_table()))
             .add("file", fluid_table(file_table()))
-            .add("cloud", fluid_table(cloud_table()));
+            .add("cloud", fluid_table(cloud_table()))
+            .add("particles", fluid_table(particle_table()));
     return variants;
 }
 

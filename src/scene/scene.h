@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fluid/cloud.h"
+#include "fluid/particles/particle_params.h"
 #include "fluid/smoke.h"
 #include "image/filter.h"
 #include "image/tone_curve.h"
@@ -43,7 +44,8 @@ struct FluidOf {
     FluidCommon common;
     P source;
 };
-using FluidSection = std::variant<FluidOf<SmokeParams>, FluidOf<FileParams>, FluidOf<CloudParams>>;
+using FluidSection = std::variant<FluidOf<SmokeParams>, FluidOf<FileParams>, FluidOf<CloudParams>,
+                                  FluidOf<ParticleParams>>;
 
 FluidCommon& common_of(FluidSection& fluid);
 const FluidCommon& common_of(const FluidSection& fluid);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "fluid/particles/particle_source.h"
 #include "scene/world.h"
 #include "studio/cache.h"
 
@@ -14,6 +15,7 @@ namespace {
 // `scripts/bench light`.
 constexpr double bytes_per_cell = 150, seconds_per_cell = 3.0e-7, disk_bytes_per_cell = 2.0;
 constexpr double seconds_per_cloud_cell = 1.5e-7, seconds_per_sample = 2.0e-6;
+constexpr double seconds_per_particle_step = 4e-7;  // of the scene fountain
 
 struct Estimator {
     const Scene& scene;
@@ -50,6 +52,19 @@ struct Estimator {
         e.memory = 4 * cells;
         e.disk_per_frame = disk_bytes_per_cell * cells;
         e.seconds_per_frame = seconds_per_cloud_cell * cells;
+        return e;
+    }
+    FluidEstimate operator()(const FluidOf<ParticleParams>& f) const {
+        const SplatLattice lattice = splat_lattice(f.source.domain);
+        FluidEstimate e;
+        e.source = "particles";
+        e.cell_size = lattice.h;
+        e.cells = lattice.cells;
+        double count = 0;
+        for (const SpoutParams& s : f.source.sources) count += most_alive(s);
+        e.memory = 400 * count + 4 * static_cast<double>(volume(e.cells));
+        e.disk_per_frame = 60 * count;
+        e.seconds_per_frame = seconds_per_particle_step * count * f.source.substeps;
         return e;
     }
 };
