@@ -2,8 +2,8 @@
 // The sub-commands and flags as CLI11 sees them; all of CLI11 is here.
 #include "commands.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/noise.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "math/interpolate.h"
 
 namespace gischt {
@@ -20,10 +22,13 @@ static float edge_gradient(std::uint64_t hash, const Vec3f& d) {
     return ((h & 1) ? -a : a) + ((h & 2) ? -b : b);
 }
 
+static float fade(float t) {
+    return t * t * t * (t * (t * 6 - 15) + 10);
+}
+
 float gradient_noise(const Vec3d& p, std::uint64_t seed) {
     const Vec3i c = floor(p);
     const Vec3f f(p - Vec3d(c));
-    auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
     const float u = fade(f.x), v = fade(f.y), w = fade(f.z);
     float corner[2][2][2];
     for (int k = 0; k < 2; ++k) {
@@ -40,6 +45,43 @@ float gradient_noise(const Vec3d& p, std::uint64_t seed) {
                         lerp(corner[k][1][0], corner[k][1][1], u), v);
     }
     return lerp(plane[0], plane[1], w);
+}
+
+// One of the 32 edge directions of a hypercube, dotted with (d, w): one coordinate is left out, the
+// others have signs.
+static float hyperedge_gradient(std::uint64_t hash, const Vec3f& d, float w) {
+    const auto h = static_cast<unsigned>(hash >> 59);
+    const unsigned left_out = h >> 3;
+    const float a = left_out == 0 ? w : d.x, b = left_out == 1 ? w : d.y,
+                c = left_out == 2 ? w : d.z;
+    return ((h & 1) ? -a : a) + ((h & 2) ? -b : b) + ((h & 4) ? -c : c);
+}
+
+float gradient_noise(const Vec3d& p, double w, std::uint64_t seed) {
+    const Vec3i c = floor(p);
+    const Vec3f f(p - Vec3d(c));
+    const double moment = std::floor(w);
+    const auto past = static_cast<float>(w - moment);
+    // A lattice of its own at each whole moment, and the blend of two between.
+    const auto slab = [&](int later) {
+        const auto l = static_cast<std::uint64_t>(static_cast<std::int64_t>(moment) + later);
+        const std::uint64_t key = mix64(seed + l * 0xd1342543de82ef95ULL);
+        const float d = past - static_cast<float>(later);
+        float plane[2];
+        for (int k = 0; k < 2; ++k) {
+            float row[2];
+            for (int j = 0; j < 2; ++j) {
+                const auto at = [&](int i) {
+                    return hyperedge_gradient(lattice_hash(c.x + i, c.y + j, c.z + k, key),
+                                              f - Vec3f(Vec3i(i, j, k)), d);
+                };
+                row[j] = lerp(at(0), at(1), fade(f.x));
+            }
+            plane[k] = lerp(row[0], row[1], fade(f.y));
+        }
+        return lerp(plane[0], plane[1], fade(f.z));
+    };
+    return past == 0 ? slab(0) : lerp(slab(0), slab(1), fade(past));
 }
 
 float fractal_noise(const Vec3d& p, int octaves, float gain, std::uint64_t seed) {
@@ -112,6 +154,37 @@ Vec3d curl_of_noise(const Vec3d& p, std::uint64_t seed) {
         }
     }
     return curl;
+}
+
+// The point of one cell at a moment. An arcsine distribution at any time, as the phases are even.
+static Vec3d swinging_point(const Vec3i& cell, double w, std::uint64_t seed) {
+    const std::uint64_t key = lattice_hash(cell.x, cell.y, cell.z, seed);
+    Vec3d point(cell);
+    for (int a = 0; a < 3; ++a) {
+        const auto axis = static_cast<std::uint32_t>(a);
+        const double phase = static_cast<double>(random_uniform(key, axis)),
+                     pace = 0.75 + 0.5 * static_cast<double>(random_uniform(key, axis + 3));
+        point[a] += 0.5 + 0.5 * std::sin(2 * pi * (phase + 0.5 * pace * w));
+    }
+    return point;
+}
+
+CellDistances cell_distances(const Vec3d& p, double w, std::uint64_t seed) {
+    const Vec3i c = floor(p);
+    double first = 1e30, second = 1e30;
+    // All points outside the block of cells up to `reach` away are further than `reach`.
+    for (int reach = 0; second > reach * reach; ++reach) {
+        const int size = 2 * reach + 1;
+        for (int n = 0; n < size * size * size; ++n) {
+            const Vec3i d = Vec3i(n % size, n / size % size, n / (size * size)) - Vec3i(reach);
+            if (max_component(abs(d)) < reach) continue;
+            const Vec3d to = swinging_point(c + d, w, seed) - p;
+            const double square = dot(to, to);
+            second = std::min(second, std::max(first, square));
+            first = std::min(first, square);
+        }
+    }
+    return {static_cast<float>(std::sqrt(first)), static_cast<float>(std::sqrt(second))};
 }
 
 }  // namespace gischt

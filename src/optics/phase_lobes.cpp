@@ -33,20 +33,22 @@ Vec3d sample_between(const Vec3d& a, float of_a, const Vec3d& b, float of_b, con
     // 1 - |way|^2 without cancellation.
     const double rest = (1 - g * g) * (1 - h * h) / (1 + g * g * h * h - 2 * dot(x, y));
     const double half = 1 / (1 + std::sqrt(rest));
-    const double q = length(way) * half;
+    const double q = std::sqrt(std::fmax(0, 1 - rest)) * half;
     const Vec3d m = move(-x, way * half);
-    const Vec3d axis = move(m, y);
-    const Vec3d e = q > 1e-9 ? normalize(axis) : a;
+    const Vec3d e = q > 1e-6 ? move(m, y) / q : a;
 
     const double A = 1 + q * q, B = 2 * q;
     const double c = v.x * A / std::sqrt((1 - q * q) * (1 - q * q) + v.x * v.x * B * B);
-    const double s = std::sqrt(std::fmax(0, 1 - c * c)), turn = 2 * pi * v.y;
+    const double s = std::sqrt(std::fmax(0, 1 - c * c));
+    const float turn = static_cast<float>(2 * pi) * u.y;
+    const auto along = static_cast<double>(std::cos(turn)),
+               across = static_cast<double>(std::sin(turn));
     Vec3d e1, e2;
     orthonormal_frame(e, e1, e2);
-    Vec3d w = c * e + s * (std::cos(turn) * e1 + std::sin(turn) * e2);
+    Vec3d w = c * e + s * (along * e1 + across * e2);
     const double mm = dot(m, m), slope = 2 * dot(m, w);
     if (2 * (1 + mm) * v.z >= 1 + mm + slope) w = -w;
-    return normalize(move(-m, w));
+    return move(-m, w);
 }
 
 PhaseLobes PhaseLobes::of(const PhaseFunction& phase) {
@@ -80,6 +82,7 @@ PhaseLobes PhaseLobes::of(const PhaseFunction& phase) {
 }
 
 float kernel_factor(const PhaseLobes::Lobe& lobe, float cosine) {
+    if (lobe.alpha == 0 && lobe.k == 0) return 1;
     if (lobe.k != 0) {
         return SchlickPhase{lobe.k}.value(cosine) / HenyeyGreensteinPhase{lobe.g}.value(cosine);
     }

@@ -11,7 +11,8 @@ namespace gischt {
 // turn together like one of g1 g2 .. gn (its Legendre moments are the powers of g). So the law of
 // the first direction of a chain whose last one is known is a product of two of them.
 
-// A unit direction w with the density HG_g(a.w) HG_h(w.b) / HG_gh(a.b) for unit a and b, g and h in
+// A direction w of length 1 (to 1e-6) with the density HG_g(a.w) HG_h(w.b) / HG_gh(a.b) for unit a
+// and b, g and h in
 // ]-1,1[; u in [0,1)^3. Exact and without rejection: g a and h b are points of the unit ball, each
 // factor is 1 / |w - point|^3, and the Moebius transformation of the ball that puts the two points
 // on either side of the origin leaves a density that is even in w but for a factor linear in w.
@@ -35,7 +36,11 @@ struct PhaseLobes {
 
     static PhaseLobes of(const PhaseFunction& phase);
 
-    const Lobe& pick(float u) const { return lobes[count == 2 && u >= lobes[0].weight ? 1 : 0]; }
+    // `random()` gives a number in [0,1), and is asked only where there is a choice.
+    template <class Random>
+    const Lobe& pick(Random&& random) const {
+        return lobes[count == 2 && random() >= lobes[0].weight ? 1 : 0];
+    }
 };
 
 // The lobe's value over that of its kernel.

@@ -23,6 +23,9 @@ struct ResolutionOf {
     Found operator()(const FluidOf<ParticleParams>& f) const {
         return {"domain.resolution", f.source.domain.resolution};
     }
+    Found operator()(const FluidOf<ProceduralParams>& f) const {
+        return {"resolution", f.source.resolution};
+    }
     Found operator()(const FluidOf<FileParams>&) const { return {}; }
 };
 

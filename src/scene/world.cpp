@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "fluid/particles/particle_source.h"
+#include "fluid/procedural/procedural.h"
 #include "fluid/smoke_source.h"
 #include "io/image_file.h"
 #include "io/mesh_file.h"
@@ -171,9 +172,20 @@ struct SourceOf {
         });
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<CloudParams>& f) const {
+        return made_by(make_cloud, f.source);
+    }
+    std::unique_ptr<FluidSource> operator()(const FluidOf<ProceduralParams>& f) const {
+        return made_by(make_procedural, f.source);
+    }
+
+  private:
+    // From a function of the parameters, the direction up and the time.
+    template <class P>
+    std::unique_ptr<FluidSource> made_by(Frame (*make)(const P&, const Vec3d&, double, Job&),
+                                         const P& source) const {
         return std::make_unique<StatelessSource>(
-            [params = f.source, up = scene.up_vector(), fps = scene.fps](int number, Job& job) {
-                Frame frame = make_cloud(params, up, number / fps, job);
+            [make, params = source, up = scene.up_vector(), fps = scene.fps](int number, Job& job) {
+                Frame frame = make(params, up, number / fps, job);
                 frame.number = number;
                 frame.dt = 1 / fps;
                 return frame;
@@ -309,8 +321,11 @@ void World::blur(View& view, Job& job) const {
     std::vector<std::vector<std::shared_ptr<const Medium>>> by_fluid;
     std::size_t parts = 1;
     for (std::size_t i = 0; i < view.frames.size(); ++i) {
-        // What a procedure makes from nothing does not move.
-        const bool is_at_rest = std::holds_alternative<FluidOf<CloudParams>>(scene_.fluids[i]);
+        // What a procedure makes from nothing does not move, unless it says how.
+        const bool is_at_rest =
+            std::holds_alternative<FluidOf<CloudParams>>(scene_.fluids[i]) ||
+            (std::holds_alternative<FluidOf<ProceduralParams>>(scene_.fluids[i]) &&
+             !view.frames[i]->find("velocity"));
         const FluidCommon& common = common_of(scene_.fluids[i]);
         const Exposure exposure{view.time, view.shutter, is_at_rest ? 1 : common.blur_moments};
         by_fluid.push_back(

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "fluid/particles/particle_source.h"
+#include "fluid/procedural/procedural.h"
 #include "scene/world.h"
 #include "studio/cache.h"
 
@@ -16,6 +17,7 @@ namespace {
 constexpr double bytes_per_cell = 150, seconds_per_cell = 3.0e-7, disk_bytes_per_cell = 2.0;
 constexpr double seconds_per_cloud_cell = 1.5e-7, seconds_per_sample = 2.0e-6;
 constexpr double seconds_per_particle_step = 4e-7;  // of the scene fountain
+constexpr double seconds_per_octave = 1.0e-7;       // of a cell of procedural noise
 
 struct Estimator {
     const Scene& scene;
@@ -43,17 +45,14 @@ struct Estimator {
         return e;
     }
     FluidEstimate operator()(const FluidOf<CloudParams>& f) const {
-        const CloudParams& p = f.source;
-        FluidEstimate e;
-        e.source = "cloud";
-        e.cell_size = max_component(p.max - p.min) / p.resolution;
-        e.cells = floor((p.max - p.min) / e.cell_size + Vec3d(0.5));
-        const auto cells = static_cast<double>(volume(e.cells));
-        e.memory = 4 * cells;
-        e.disk_per_frame = disk_bytes_per_cell * cells;
-        e.seconds_per_frame = seconds_per_cloud_cell * cells;
-        return e;
+        return box_filled("cloud", f.source, 1, seconds_per_cloud_cell);
     }
+    FluidEstimate operator()(const FluidOf<ProceduralParams>& f) const {
+        const ProceduralParams& p = f.source;
+        const int fields = 1 + p.temperature.has_value() + p.flame.has_value() + 3 * is_moving(p);
+        return box_filled("procedural", p, fields, seconds_per_octave * p.noise.octaves);
+    }
+
     FluidEstimate operator()(const FluidOf<ParticleParams>& f) const {
         const SplatLattice lattice = splat_lattice(f.source.domain);
         FluidEstimate e;
@@ -65,6 +64,22 @@ struct Estimator {
         e.memory = 400 * count + 4 * static_cast<double>(volume(e.cells));
         e.disk_per_frame = 60 * count;
         e.seconds_per_frame = seconds_per_particle_step * count * f.source.substeps;
+        return e;
+    }
+
+  private:
+    // At most: as if every cell of the box were filled.
+    template <class P>
+    static FluidEstimate box_filled(const char* source, const P& p, int fields,
+                                    double seconds_per_cell_here) {
+        FluidEstimate e;
+        e.source = source;
+        e.cell_size = max_component(p.max - p.min) / p.resolution;
+        e.cells = max(floor((p.max - p.min) / e.cell_size + Vec3d(0.5)), Vec3i(2));
+        const auto cells = static_cast<double>(volume(e.cells));
+        e.memory = 4 * fields * cells;
+        e.disk_per_frame = disk_bytes_per_cell * fields * cells;
+        e.seconds_per_frame = seconds_per_cell_here * cells;
         return e;
     }
 };

@@ -39,7 +39,7 @@ Vec3d vortex_part(const Vec3d& a, const Vec3d& b, double core, const Vec3d& poin
 
 }  // namespace
 
-Vec3d turbulence_at(const TurbulenceParams& params, const Vec3d& point, double time) {
+Vec3d eddy_velocity(const EddyParams& params, const Vec3d& point, double time) {
     const double speed = params.speed.at(time);
     if (speed == 0) return {};
     // One pattern passes into the next such that the variance stays; each is free of divergence,
@@ -97,7 +97,7 @@ void Air::set_flow(std::shared_ptr<const Flow> begin, std::shared_ptr<const Flow
 }
 
 Vec3d Air::velocity(const Vec3d& point, double time) const {
-    Vec3d u = params_.wind.at(time) + turbulence_at(params_.turbulence, point, time);
+    Vec3d u = params_.wind.at(time) + eddy_velocity(params_.turbulence, point, time);
     for (const VortexParams& v : params_.vortices) u += vortex_velocity(v, point, time);
     if (begin_ && end_) {
         const double s = std::clamp((time - from_) / (to_ - from_), 0.0, 1.0);

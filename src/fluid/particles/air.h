@@ -11,7 +11,7 @@
 namespace gischt {
 
 // Turbulence without divergence: the curl of animated noise (Bridson et al. 2007).
-struct TurbulenceParams {
+struct EddyParams {
     Keyed<double> speed = 0.0;  // m/s, root mean square
     double scale = 0.5;         // m, size of the largest eddies
     int octaves = 2;            // eddies, each half as large; slower by 2^(-1/3) (Kolmogorov 1941)
@@ -31,12 +31,12 @@ struct VortexParams {
 // The velocity of the air that carries particles: the sum of its parts.
 struct AirParams {
     Keyed<Vec3d> wind;  // m/s
-    TurbulenceParams turbulence;
+    EddyParams turbulence;
     std::vector<VortexParams> vortices;
 };
 
 // m/s at a point in metres; unit root mean square times params.speed.
-Vec3d turbulence_at(const TurbulenceParams& params, const Vec3d& point, double time);
+Vec3d eddy_velocity(const EddyParams& params, const Vec3d& point, double time);
 
 // Biot-Savart with a core: |u| = circulation r / (2 pi (r^2 + core^2)) at the distance r of a
 // straight line (Rosenhead 1930; Scully 1975), the same regularization for the parts of a curve.

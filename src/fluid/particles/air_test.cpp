@@ -18,8 +18,8 @@ Vec3d any_point(std::uint64_t i, double size) {
     return size * Vec3d(random_uniform(key, 0), random_uniform(key, 1), random_uniform(key, 2));
 }
 
-TurbulenceParams eddies() {
-    TurbulenceParams p;
+EddyParams eddies() {
+    EddyParams p;
     p.speed = 3.0;
     p.scale = 0.4;
     p.octaves = 3;
@@ -28,8 +28,8 @@ TurbulenceParams eddies() {
 
 // Second derivatives jump at the planes of the lattice, where the central difference is off by e /
 // 0.1 m of the first ones; elsewhere the error is far below.
-TEST(Turbulence, HasNoDivergence) {
-    const TurbulenceParams p = eddies();
+TEST(Eddies, HasNoDivergence) {
+    const EddyParams p = eddies();
     constexpr double e = 1e-5;
     double largest_slope = 0;
     for (std::uint64_t i = 0; i < 500; ++i) {
@@ -39,7 +39,7 @@ TEST(Turbulence, HasNoDivergence) {
             Vec3d lo = x, hi = x;
             lo[a] -= e;
             hi[a] += e;
-            const Vec3d d = (turbulence_at(p, hi, 0.3) - turbulence_at(p, lo, 0.3)) / (2 * e);
+            const Vec3d d = (eddy_velocity(p, hi, 0.3) - eddy_velocity(p, lo, 0.3)) / (2 * e);
             divergence += d[a];
             slope += length(d);
         }
@@ -50,12 +50,12 @@ TEST(Turbulence, HasNoDivergence) {
 }
 
 // The mean of v^2 of independent points scatters by its standard error: 5 of them.
-TEST(Turbulence, HasTheSpeedAsked) {
+TEST(Eddies, HasTheSpeedAsked) {
     for (const double time : {0.0, 0.7, 1.0}) {
         double sum = 0, squares = 0;
         constexpr int n = 40000;
         for (std::uint64_t i = 0; i < n; ++i) {
-            const Vec3d v = turbulence_at(eddies(), any_point(i, 1000), time);
+            const Vec3d v = eddy_velocity(eddies(), any_point(i, 1000), time);
             sum += dot(v, v);
             squares += dot(v, v) * dot(v, v);
         }
@@ -65,13 +65,13 @@ TEST(Turbulence, HasTheSpeedAsked) {
     }
 }
 
-TEST(Turbulence, ChangesWithoutJumps) {
+TEST(Eddies, ChangesWithoutJumps) {
     for (std::uint64_t i = 0; i < 50; ++i) {
         const Vec3d x = any_point(i, 5);
-        const Vec3d before = turbulence_at(eddies(), x, 2 - 1e-9),
-                    after = turbulence_at(eddies(), x, 2 + 1e-9);
+        const Vec3d before = eddy_velocity(eddies(), x, 2 - 1e-9),
+                    after = eddy_velocity(eddies(), x, 2 + 1e-9);
         EXPECT_LT(length(after - before), 1e-6);
-        EXPECT_GT(length(turbulence_at(eddies(), x, 4) - after), 1e-3);
+        EXPECT_GT(length(eddy_velocity(eddies(), x, 4) - after), 1e-3);
     }
 }
 
@@ -129,7 +129,7 @@ TEST(Air, AddsItsPartsAndRefusesWhatMakesNoSense) {
     p.turbulence = eddies();
     const Vec3d x(0.3, 0.2, 0.1);
     const Vec3d sum = Vec3d(1, 2, 3) + 2.0 * vortex_velocity(p.vortices[0], x, 0.5) +
-                      turbulence_at(p.turbulence, x, 0.5);
+                      eddy_velocity(p.turbulence, x, 0.5);
     EXPECT_LT(length(Air(p).velocity(x, 0.5) - sum), 1e-12);
     p.vortices[1].core = 0;
     EXPECT_THROW(Air{p}, Error);

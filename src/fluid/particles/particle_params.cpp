@@ -68,10 +68,10 @@ const Table<SpoutParams>& spout_table() {
     return table;
 }
 
-const Table<TurbulenceParams>& turbulence_table() {
-    using P = TurbulenceParams;
+const Table<EddyParams>& eddy_table() {
+    using P = EddyParams;
     static const Table<P> table =
-        Table<P>("turbulence", "Eddies of the air: curl noise, free of divergence")
+        Table<P>("eddies", "Turbulence of the air: curl noise, free of divergence")
             .add("speed", &P::speed, {.unit = "m/s", .help = "Root mean square", .min = 0})
             .add("scale", &P::scale,
                  {.unit = "m", .help = "Size of the largest eddies", .min = 0, .min_open = true})
@@ -179,7 +179,7 @@ const Table<AirParams>& air_table() {
     static const Table<P> table =
         Table<P>("air", "The air that carries particles")
             .add("wind", &P::wind, {.unit = "m/s", .help = "Velocity of the air"})
-            .sub("turbulence", &P::turbulence, turbulence_table(), {.help = "Its eddies"})
+            .sub("turbulence", &P::turbulence, eddy_table(), {.help = "Its eddies"})
             .list("vortex", &P::vortices, vortex_table(), {.help = "Lines that it turns around"});
     return table;
 }

@@ -20,9 +20,9 @@ void AngleSampler::aim(std::span<const Light* const> lights, const Ray& ray, dou
         Arc arc;
         arc.nearest = dot(place->center - ray.origin, ray.direction);
         const Vec3d aside = ray.at(arc.nearest) - place->center;
-        // A ray through the light would only ever take its middle.
-        const double size = length(place->center - ray.origin) + t0;
-        arc.distance = std::max({length(aside), 0.5 * place->radius, 1e-6 * size, 1e-12});
+        // A ray through the light, or from it, would only ever take its middle.
+        const double size = length(place->center - ray.origin) + (std::isfinite(t1) ? t1 : t0);
+        arc.distance = std::max({length(aside), 0.5 * place->radius, 1e-6 * size});
         arc.begin = std::atan((t0 - arc.nearest) / arc.distance);
         arc.angle = std::atan((t1 - arc.nearest) / arc.distance) - arc.begin;
         // Its light over the stretch by the midpoint rule in the angle, where the square law is

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light that reaches a scattering point straight from the lights, and what a path meets by itself.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "image/color.h"
@@ -112,7 +113,8 @@ Vec3f PathTracer::sunlight(const SunSource& sun, const Scatterer& at, const Ligh
 void PathTracer::from_local(const Scatterer& at, const Leg& leg, RandomStream& random) {
     float total = 0;
     for (const auto& d : scene_.local) total += luminance(d.light->mean_radiance(at.point));
-    if (!(total > 0)) return;
+    constexpr float at_a_light = 1e15f;  // nearer than some 1e-8 m, where all sums overflow
+    if (!(total > 0) || total > at_a_light) return;
     float left = random.next() * total, share = 0;
     PathScene::Drawn drawn;
     for (const auto& d : scene_.local) {

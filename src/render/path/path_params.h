@@ -25,7 +25,7 @@ struct PathParams {
     TransmittanceEstimator shadow = TransmittanceEstimator::Cached;
     CameraSegment camera = CameraSegment::Profile;
     int points = 8;       // of a camera ray with a profile, at which direct light is taken
-    int splits = 4;       // of them from which paths go on
+    int splits = 8;       // of them from which paths go on
     int equiangular = 4;  // more points of such a ray, for lights at finite places alone
     bool bridge = true;   // suns are reached through chains of turns that end in their direction
     double correction = 0.1;  // chance that a cached transmittance is made exact

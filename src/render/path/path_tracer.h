@@ -69,6 +69,7 @@ class PathTracer {
         // The scatterings in succession by one medium up to here (see sun_bridge.cpp).
         const Medium* run_in = nullptr;
         int run = 0;
+        float credit = 0;  // towards the next bridge
     };
     // Turns that end in the direction of a sun.
     struct Chain {
@@ -111,7 +112,7 @@ class PathTracer {
     void from_surface(const Leg& leg, const SurfaceHit& hit, const Vec3f& transmittance);
 
     bool has_bridges(const Medium& medium) const;
-    void set_out_bridges(const Scatterer& at, const Leg& leg, RandomStream random);
+    void set_out_bridges(const Scatterer& at, Leg& leg, RandomStream random);
     static Chain chain_of(const Scatterer& at, const SunSource& sun, int turns,
                           RandomStream& random);
     void bridge(const Scatterer& at, Leg leg, const SunSource& sun, const Chain& chain,

@@ -24,20 +24,25 @@ bool PathTracer::has_bridges(const Medium& medium) const {
     return scene_.params.bridge && !scene_.suns.empty() && medium.phase_lobes().memory > 0;
 }
 
-// From a scattering in a medium: the longest bridge, where it promises light, and from the first of
-// a run one of the shorter ones, drawn by its share in the light per root of its flights.
-void PathTracer::set_out_bridges(const Scatterer& at, const Leg& leg, RandomStream random) {
+// From a scattering in a medium: as many of the longest bridges as it promises light, counted along
+// the run so that they are spread evenly, and from the first of a run one of the shorter ones,
+// drawn by its share in the light per root of its flights.
+void PathTracer::set_out_bridges(const Scatterer& at, Leg& leg, RandomStream random) {
     const int memory = at.medium->phase_lobes().memory, left = depth_ - leg.events;
     const auto suns = static_cast<float>(scene_.suns.size());
     const auto pick = static_cast<std::size_t>(random.next() * suns);
     const SunSource& sun = scene_.suns[std::min(pick, scene_.suns.size() - 1)];
+    if (leg.run == 1) leg.credit = random.next();
     if (left >= memory) {
-        constexpr float least = 0.03f;
+        // The optimum is flat: cost changes by 10 % when these are halved or doubled.
+        constexpr float least = 0.03f, most = 4, density = 0.7f, fading = 0.7f;
         const Chain chain = chain_of(at, sun, memory, random);
-        const float promise = static_cast<float>(4 * pi) * chain.value *
-                              std::exp(-forward_depth(sun, at.point, tracker_));
-        const float chance = std::clamp(promise, least, 1.0f);
-        if (random.next() < chance) bridge(at, leg, sun, chain, suns / chance, random);
+        const float promise = density * static_cast<float>(4 * pi) * chain.value *
+                              std::exp(-fading * forward_depth(sun, at.point, tracker_));
+        const float number = std::clamp(promise, least, most);
+        for (leg.credit += number; leg.credit >= 1; leg.credit -= 1) {
+            bridge(at, leg, sun, chain, suns / number, random);
+        }
     }
     const int longest = std::min(memory - 1, left);
     if (leg.run > 1 || longest < 1) return;
@@ -67,7 +72,7 @@ PathTracer::Chain PathTracer::chain_of(const Scatterer& at, const SunSource& sun
     chain.sun = sun.light->sample(at.point, random.two());
     chain.rest[chain.turns + 1] = 1;
     for (std::size_t i = chain.turns + 1; i-- > 0;) {
-        chain.lobe[i] = at.medium->phase_lobes().pick(random.next());
+        chain.lobe[i] = at.medium->phase_lobes().pick([&] { return random.next(); });
         chain.rest[i] = chain.rest[i + 1] * chain.lobe[i].g;
     }
     const float cosine = dot(at.forward, Vec3f(chain.sun.direction));

@@ -45,9 +45,9 @@ Vec3f sun_transmittance(const SunSource& sun, const Vec3d& point, const Vec3d& t
     const auto most = static_cast<float>(params.correction);
     float chance = most * std::clamp(4 * largest * (1 - largest), 0.1f, 1.0f);
     // An exact transmittance below (1 - chance) times the cached one makes the result negative.
-    // Depths are wrong by less than half of the range that they were interpolated from; where that
-    // is a good part of 1 the medium is so dense that the exact one costs little.
-    chance = std::clamp(0.5f * (max_component(doubt) - 1), chance, 1.0f);
+    // Depths are nearly always wrong by less than half of the range that they were interpolated
+    // from; where that is a good part of 1 the medium is so dense that the exact one costs little.
+    chance = std::clamp(max_component(doubt) - 0.5f, chance, 1.0f);
     if (random.next() >= chance) return cached;
     const Vec3f exact = tracker.transmittance(ray, TransmittanceEstimator::Exact, random);
     return cached + (exact - cached) * (1 / chance);
