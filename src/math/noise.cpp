@@ -116,10 +116,12 @@ float cellular_noise(const Vec3d& p, std::uint64_t seed) {
     return static_cast<float>(std::sqrt(nearest));
 }
 
-// An edge direction of a cube by a number below 12, as edge_gradient() has them.
-static Vec3d edge_direction(std::uint64_t edge) {
-    const double a = edge & 1 ? -1 : 1, b = edge & 2 ? -1 : 1;
-    return edge < 4 ? Vec3d(a, b, 0) : edge < 8 ? Vec3d(a, 0, b) : Vec3d(0, a, b);
+// An edge direction of a cube by 16 random bits, from a table: the choice cannot be foreseen.
+static const Vec3d& edge_direction(std::uint64_t bits) {
+    static constexpr Vec3d edges[12] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0},
+                                        {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+                                        {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}};
+    return edges[(bits & 0xffff) * 12 >> 16];
 }
 
 Vec3d curl_of_noise(const Vec3d& p, std::uint64_t seed) {
@@ -142,9 +144,8 @@ Vec3d curl_of_noise(const Vec3d& p, std::uint64_t seed) {
                 // Each corner gives the potential w N(d), N(d) = (g0.d, g1.d, g2.d), whose curl is
                 // grad w x N + w curl N.
                 const std::uint64_t hash = lattice_hash(c.x + i, c.y + j, c.z + k, seed);
-                const Vec3d g0 = edge_direction((hash & 0xfffff) % 12),
-                            g1 = edge_direction((hash >> 20 & 0xfffff) % 12),
-                            g2 = edge_direction((hash >> 40 & 0xfffff) % 12);
+                const Vec3d &g0 = edge_direction(hash), &g1 = edge_direction(hash >> 16),
+                            &g2 = edge_direction(hash >> 32);
                 const Vec3d d = f - Vec3d(Vec3i(i, j, k));
                 const double x = weight[0][i], y = weight[1][j], z = weight[2][k];
                 const Vec3d gradient(slope[0][i] * y * z, x * slope[1][j] * z, x * y * slope[2][k]);
