@@ -138,7 +138,9 @@ bool is_known_type(const std::string& type) {
 std::string why_not(const VdbEntry& entry) {
     if (entry.transform == "NonlinearFrustumMap") return "its transform is not affine";
     if (is_known_type(entry.type)) return {};
-    if (is_point_type(entry.type)) return "points are read from unaltered files of gischt only";
+    if (is_point_type(entry.type)) {
+        return "points that gischt did not write, or that were altered: points.foreign reads them";
+    }
     return fmt::format("type '{}' has no place in a frame", entry.value_type());
 }
 
@@ -211,15 +213,15 @@ std::vector<int> wanted_entries(const VdbHeader& header, const VdbReadOptions& o
 }
 
 // The grids of points. The library trusts what is in them, and their pages cannot be checked from
-// outside: only files are read that are to the last bit as gischt wrote them.
+// outside: without leave only files are read that are to the last bit as gischt wrote them.
 std::map<std::string, Particles> read_points(const std::string& path, const VdbHeader& header,
-                                             std::vector<int>& wanted) {
+                                             bool trusts_all, std::vector<int>& wanted) {
     std::vector<int> points;
     for (const int w : wanted) {
         if (is_point_type(header.grids[static_cast<std::size_t>(w)].type)) points.push_back(w);
     }
     std::map<std::string, Particles> out;
-    if (points.empty() || !has_vdb_stamp(path)) return out;
+    if (points.empty() || (!trusts_all && !has_vdb_stamp(path))) return out;
     std::erase_if(wanted, [&](int w) { return std::ranges::find(points, w) != points.end(); });
     openvdb::io::File file(path);
     for (const int p : points) {
@@ -245,6 +247,18 @@ void describe_unknown(const VdbEntry& entry, VdbGridInfo& info) {
     std::sscanf(text("file_bbox_max").c_str(), "%d %d %d", &info.hi[0], &info.hi[1], &info.hi[2]);
 }
 
+void describe_point_grid(const std::string& path, const VdbEntry& entry, VdbGridInfo& info) {
+    guarded(path, entry.name, [&] {
+        openvdb::io::File file(path);
+        file.open(false);
+        const auto grid = file.readGrid(entry.unique_name);
+        const PointGridInfo points = describe_points(*grid);
+        info.points = points.count;
+        info.attributes = points.attributes;
+        info.voxel_size.fill(grid->voxelSize().x());
+    });
+}
+
 VdbGridInfo grid_info(const std::string& path, const VdbHeader& header, const VdbEntry& entry,
                       Job& job) {
     VdbGridInfo info;
@@ -254,7 +268,13 @@ VdbGridInfo grid_info(const std::string& path, const VdbHeader& header, const Vd
     info.is_half = entry.is_half;
     info.metadata = entry.metadata;
     info.note = why_not(entry);
+    if (is_point_type(entry.type) && has_vdb_stamp(path)) info.note.clear();
     info.is_readable = info.note.empty();
+    if (is_point_type(entry.type) && info.is_readable) {
+        describe_unknown(entry, info);
+        describe_point_grid(path, entry, info);
+        return info;
+    }
     if (!info.is_readable) {
         describe_unknown(entry, info);
         return info;
@@ -391,7 +411,7 @@ Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job)
     openvdb::initialize();
     const VdbHeader header = read_vdb_header(path);
     std::vector<int> wanted = wanted_entries(header, options);
-    auto particles = read_points(path, header, wanted);
+    auto particles = read_points(path, header, options.foreign_points, wanted);
 
     // Grids in parallel: decompression within one is serial in the library.
     Reading reading{path, job, {path, options.max_values}};

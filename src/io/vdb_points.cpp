@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <vector>
 
 namespace gischt::vdb_detail {
@@ -53,9 +54,9 @@ void take(const Leaf& leaf, const char* name, F&& set) {
     for (auto i = leaf.beginIndexOn(); i; ++i) set(handle.get(*i));
 }
 
-// Which of the arrays that may be empty a grid has.
+// Which of the arrays that may be empty a grid has, and how wide its ids are.
 struct Looks {
-    bool color, opacity, temperature;
+    bool color, opacity, temperature, id, short_id;
 };
 
 // Appends what one leaf holds.
@@ -68,6 +69,7 @@ void take_leaf(const Leaf& leaf, const openvdb::math::Transform& transform, cons
         const auto world =
             transform.indexToWorld(openvdb::Vec3d(place.get(*i)) + i.getCoord().asVec3d());
         out.position.emplace_back(world.x(), world.y(), world.z());
+        if (!world.isFinite()) throw std::runtime_error("a position is not finite");
     }
     const std::size_t count = out.position.size();
     out.velocity.resize(count);
@@ -88,7 +90,13 @@ void take_leaf(const Leaf& leaf, const openvdb::math::Transform& transform, cons
     take<float>(leaf, "age", into(out.age, same));
     take<float>(leaf, "life", into(out.life, same));
     take<float>(leaf, "pscale", into(out.radius, same));
-    take<std::int64_t>(leaf, "id", into(out.id, whole));
+    if (looks.short_id) {
+        take<std::int32_t>(leaf, "id", into(out.id, whole));
+    } else if (looks.id) {
+        take<std::int64_t>(leaf, "id", into(out.id, whole));
+    } else {
+        std::iota(out.id.begin() + static_cast<std::ptrdiff_t>(first), out.id.end(), first);
+    }
     if (looks.color) take<openvdb::Vec3f>(leaf, "Cd", into(out.color, from_vdb));
     if (looks.opacity) take<float>(leaf, "Alpha", into(out.opacity, same));
     if (looks.temperature) take<float>(leaf, "temperature", into(out.temperature, same));
@@ -139,7 +147,9 @@ Particles from_point_grid(const openvdb::GridBase& grid) {
     const auto has = [&](const char* name) {
         return first->attributeSet().find(name) != openvdb::points::AttributeSet::INVALID_POS;
     };
-    const Looks looks{has("Cd"), has("Alpha"), has("temperature")};
+    const bool has_short_id =
+        has("id") && first->constAttributeArray("id").hasValueType<std::int32_t>();
+    const Looks looks{has("Cd"), has("Alpha"), has("temperature"), has("id"), has_short_id};
     for (auto leaf = points.tree().cbeginLeaf(); leaf; ++leaf) {
         take_leaf(*leaf, points.transform(), looks, out);
     }
@@ -149,6 +159,19 @@ Particles from_point_grid(const openvdb::GridBase& grid) {
         for (std::size_t i = 0; i < array.size(); ++i) array[i] = unsorted[order[i]];
     });
     return out;
+}
+
+PointGridInfo describe_points(const openvdb::GridBase& grid) {
+    const auto& points = dynamic_cast<const PointDataGrid&>(grid);
+    PointGridInfo info;
+    info.count = static_cast<std::int64_t>(openvdb::points::pointCount(points.tree()));
+    const auto first = points.tree().cbeginLeaf();
+    if (!first) return info;
+    for (const auto& [name, place] : first->attributeSet().descriptor().map()) {
+        if (name != "P") info.attributes.push_back(name);
+    }
+    std::ranges::sort(info.attributes);
+    return info;
 }
 
 }  // namespace gischt::vdb_detail

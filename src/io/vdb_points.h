@@ -7,6 +7,7 @@
 #include <openvdb/openvdb.h>
 
 #include <string>
+#include <vector>
 
 #include "grid/particles.h"
 
@@ -21,8 +22,15 @@ openvdb::GridBase::Ptr to_point_grid(const Particles& particles, const std::stri
                                      double voxel_size);
 
 // The particles in ascending order of their ids; the library keeps no order. Attributes that are
-// missing are 0, the radius 0.01 m, the life infinite. Throws std::exception for a grid that is no
-// points or of attributes of other types.
+// missing are 0, the radius 0.01 m, the life infinite, all ids the number in the file. Throws
+// std::exception for a grid that is no points, for attributes of other types (ids may have 32 bits)
+// and for positions that are not finite.
 Particles from_point_grid(const openvdb::GridBase& grid);
+
+struct PointGridInfo {
+    std::int64_t count = 0;
+    std::vector<std::string> attributes;  // but the position, in alphabetical order
+};
+PointGridInfo describe_points(const openvdb::GridBase& grid);
 
 }  // namespace gischt::vdb_detail

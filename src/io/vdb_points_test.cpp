@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/parallel.h"
@@ -77,6 +78,37 @@ TEST(VdbPoints, SameBytesOnAnyNumberOfThreadsAndNoneAtAll) {
     EXPECT_EQ(read_bytes(folder.file("1")), read_bytes(folder.file("2")));
     write_vdb(folder.file("none.vdb"), frame_of(0, false), {}, job);
     EXPECT_TRUE(read_vdb(folder.file("none.vdb"), {}, job).particles.at("particles").is_empty());
+}
+
+TEST(VdbPoints, AreListedWithTheirAttributes) {
+    const TestFolder folder("vdb_points_listed");
+    Job job;
+    write_vdb(folder.file("a.vdb"), frame_of(321, true), {}, job);
+    const VdbInfo info = list_vdb(folder.file("a.vdb"), job);
+    const auto found = std::ranges::find(info.grids, "particles", &VdbGridInfo::name);
+    ASSERT_NE(found, info.grids.end());
+    EXPECT_EQ(found->points, 321);
+    EXPECT_TRUE(found->is_readable);
+    const std::vector<std::string> names{"Alpha", "Cd",     "age",         "id",
+                                         "life",  "pscale", "temperature", "v"};
+    EXPECT_EQ(found->attributes, names);
+}
+
+// Another program's file, as far as a reader can tell: the same content under a UUID of its own.
+TEST(VdbPoints, OfOthersAreReadWhereThatIsAsked) {
+    const TestFolder folder("vdb_points_foreign");
+    Job job;
+    const std::string path = folder.file("a.vdb");
+    write_vdb(path, frame_of(500, true), {}, job);
+    VdbReadOptions options;
+    const Particles own = read_vdb(path, options, job).particles.at("particles");
+    std::string bytes = read_bytes(path);
+    bytes.replace(21, 8, bytes.substr(21, 8) == "00000000" ? "11111111" : "00000000");
+    put(path, bytes);
+    EXPECT_TRUE(read_vdb(path, options, job).particles.empty());
+    EXPECT_EQ(list_vdb(path, job).grids.back().points, -1);
+    options.foreign_points = true;
+    EXPECT_EQ(read_vdb(path, options, job).particles.at("particles"), own);
 }
 
 // What somebody changed is not given to the library: left out with a warning, or refused.
