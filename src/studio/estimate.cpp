@@ -16,8 +16,9 @@ namespace {
 // `scripts/bench light`.
 constexpr double bytes_per_cell = 150, seconds_per_cell = 3.0e-7, disk_bytes_per_cell = 2.0;
 constexpr double seconds_per_cloud_cell = 1.5e-7, seconds_per_sample = 2.0e-6;
-constexpr double seconds_per_particle_step = 4e-7;  // of the scene fountain
-constexpr double seconds_per_octave = 1.0e-7;       // of a cell of procedural noise
+// In eddies of two octaves, and to a density and a file: `scripts/bench particle`.
+constexpr double seconds_per_particle_step = 3e-7, seconds_per_particle = 1.5e-6;
+constexpr double seconds_per_octave = 1.0e-7;  // of a cell of procedural noise
 
 struct Estimator {
     const Scene& scene;
@@ -63,7 +64,8 @@ struct Estimator {
         for (const SpoutParams& s : f.source.sources) count += most_alive(s);
         e.memory = 400 * count + 4 * static_cast<double>(volume(e.cells));
         e.disk_per_frame = 60 * count;
-        e.seconds_per_frame = seconds_per_particle_step * count * f.source.substeps;
+        e.seconds_per_frame =
+            (seconds_per_particle_step * f.source.substeps + seconds_per_particle) * count;
         return e;
     }
 
