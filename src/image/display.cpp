@@ -68,7 +68,7 @@ class Developer {
 DisplayImage to_display(const Image& image, const DisplayOptions& options, int bits) {
     GISCHT_ASSERT(bits == 8 || bits == 16);
     const Developer develop(image, options, bits);
-    DisplayImage out{image.width, image.height, develop.has_alpha() ? 4 : 3, bits, {}};
+    DisplayImage out{image.width, image.height, develop.has_alpha() ? 4 : 3, bits, {}, true};
     const auto channels = static_cast<std::size_t>(out.channels);
     out.codes.resize(image.pixel_count() * channels);
     parallel_for(image.height, 8, [&](int y) {

@@ -25,6 +25,7 @@ struct DisplayImage {
     int channels = 3;  // 4 with alpha
     int bits = 8;      // or 16
     std::vector<std::uint16_t> codes;
+    bool is_srgb = true;  // else the codes are data, and no colour to be shown
 };
 
 // Exposure, tone curve, sRGB transfer and rounding to `bits` (8 or 16). Throws Error{Input} when

@@ -8,9 +8,10 @@
 
 namespace gischt {
 
-// Writes sRGB codes as PNG, marked sRGB, with the metadata as text chunks (tEXt, or iTXt where the
-// text is not ASCII). `level` is zlib's: 1 fast, 9 small. Throws Error{Usage} when a metadata key
-// is empty or longer than 79 characters (PNG specification, 11.3.4.2), and what AtomicFile throws.
+// Writes codes as PNG, marked sRGB unless they are data, with the metadata as text chunks (tEXt, or
+// iTXt where the text is not ASCII). `level` is zlib's: 1 fast, 9 small. Throws Error{Usage} when a
+// metadata key is empty or longer than 79 characters (PNG specification, 11.3.4.2), and what
+// AtomicFile throws.
 void write_png(const std::string& path, const DisplayImage& image, const Metadata& metadata = {},
                int level = 6);
 

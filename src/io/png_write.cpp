@@ -72,7 +72,7 @@ bool run(Encoder& e, png_structp png, png_infop info) {
     png_set_IHDR(png, info, static_cast<png_uint_32>(e.image.width),
                  static_cast<png_uint_32>(e.image.height), e.image.bits, color, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (e.image.is_srgb) png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (!e.texts.empty()) {
         png_set_text(png, info, e.texts.data(), static_cast<int>(e.texts.size()));
     }
