@@ -111,6 +111,59 @@ void add_render(CLI::App& app, CommandContext& context) {
     });
 }
 
+// gischt flipbook SCENE|FILE.vdb|CACHE [-o STEM.png]
+void add_flipbook(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<FlipbookOptions>();
+    SceneOptions& o = options->scene;
+    CLI::App* sub = app.add_subcommand(
+        "flipbook", "Sprite sheets for games: colour, emission, depth, motion, six-way light");
+    sub->add_option("TARGET", o.target, "A scene, a .vdb file or pattern, or a cache folder")
+        ->required();
+    sub->add_option("-o,--output", o.outputs,
+                    "Stem of the sheets, STEM.png or STEM.exr; repeatable (default: NAME.png)")
+        ->type_name("STEM.png")
+        ->allow_extra_args(false);
+    sub->add_option("--grid", options->grid,
+                    "Columns and rows (default: a sheet about as wide as high)")
+        ->type_name("AxB");
+    sub->add_option("--cell", options->cell, "Pixels of a cell (default: 128x128)")
+        ->type_name("WxH");
+    sub->add_option("--loop", options->loop,
+                    "Fade the last N frames over to the first ones: a loop of N cells fewer")
+        ->type_name("N")
+        ->check(CLI::Range(0, 100000));
+    sub->add_option("--layers", options->layers,
+                    "color, emission, depth, motion, light, with commas (default: all there is)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("A,B");
+    sub->add_flag("--premultiplied", options->premultiplied,
+                  "Values times their alpha, in place of straight alpha");
+    sub->add_flag("--fit", options->fit, "Frame the fluids although the scene has a camera");
+    sub->add_option("--light-scale", options->light_scale,
+                    "The value of light maps that becomes 1 (default: a white wall's)")
+        ->check(CLI::PositiveNumber);
+    sub->add_option("--cache", o.cache, "Folder that keeps simulated frames (default: out/NAME)")
+        ->type_name("DIR");
+    sub->add_option("--frames", o.frames, "Which frames")->type_name("A-B[xSTEP]");
+    sub->add_option("--seed", o.seed, "Another seed gives other random numbers");
+    sub->add_flag("--restart", o.restart, "Throw away cached frames and start anew");
+    sub->add_flag("--preview", o.preview,
+                  "Half the cells along each edge, one sample per pixel; in a cache of its own");
+    sub->add_option("--method", o.method, "Render method, see `gischt methods`");
+    sub->add_option("--spp", o.spp, "Samples per pixel");
+    sub->add_option("--noise", o.noise, "Stop at this estimated relative noise")
+        ->check(CLI::PositiveNumber);
+    sub->add_option("--time", o.time, "Stop after this time per picture: 90s, 10m, 2h");
+    sub->add_option("--preset", o.preset, "A look for any volume: smoke, fire, cloud, steam, fog");
+    sub->add_option("--exposure", o.exposure, "Brightness of the colour's PNG in stops")
+        ->type_name("EV");
+    add_work_flags(*sub, context);
+    sub->callback([options, &context] {
+        context.action = [options, &context] { return make_flipbook(*options, context); };
+    });
+}
+
 // gischt check SCENE
 void add_check(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<SceneOptions>();
@@ -236,6 +289,7 @@ std::optional<int> parse(int argc, char** argv, CommandContext& context) {
     add_run(app, context);
     add_sim(app, context);
     add_render(app, context);
+    add_flipbook(app, context);
     add_check(app, context);
     add_info(app, context);
     add_merge(app, context);

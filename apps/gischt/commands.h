@@ -27,6 +27,14 @@ struct ConvertOptions {
     double cell_size = 0;  // m, of particles that become a density; 0 chooses
     bool foreign = false;  // take points that other programs wrote
 };
+struct FlipbookOptions {
+    SceneOptions scene;
+    std::string grid, cell;  // AxB
+    int loop = 0;
+    std::vector<std::string> layers;
+    bool premultiplied = false, fit = false;
+    double light_scale = 1;
+};
 struct DocOptions {
     std::string address;
     bool markdown = false, json_schema = false;
@@ -36,6 +44,7 @@ struct DocOptions {
 int run_scene(const SceneOptions& options, CommandContext& context);
 int simulate_scene(const SceneOptions& options, CommandContext& context);
 int render_target(const SceneOptions& options, CommandContext& context);
+int make_flipbook(const FlipbookOptions& options, CommandContext& context);
 int check_scene(const SceneOptions& options, CommandContext& context);
 int print_info(const std::string& target, Job& job);
 int merge_films(const MergeOptions& options, const std::string& command);

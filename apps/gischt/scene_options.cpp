@@ -16,18 +16,6 @@ namespace gischt {
 namespace fs = std::filesystem;
 namespace {
 
-// Two whole numbers with a letter between them: 640x360, 0:16.
-std::pair<int, int> parse_pair(const std::string& text, char between, const char* flag) {
-    int a = 0, b = 0;
-    const char* end = text.data() + text.size();
-    const auto first = std::from_chars(text.data(), end, a);
-    if (first.ec == std::errc() && first.ptr != end && *first.ptr == between) {
-        const auto second = std::from_chars(first.ptr + 1, end, b);
-        if (second.ec == std::errc() && second.ptr == end) return {a, b};
-    }
-    throw Error(ErrorKind::Usage, flag, fmt::format("'{}' is not of the form A{}B", text, between));
-}
-
 // Seconds of "90", "90s", "10m", "2h".
 double parse_time(const std::string& text) {
     double number = 0;
@@ -96,6 +84,17 @@ Order order_of(const SceneOptions& o, const CommandContext& context) {
 }
 
 }  // namespace
+
+std::pair<int, int> parse_pair(const std::string& text, char between, const char* flag) {
+    int a = 0, b = 0;
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, a);
+    if (first.ec == std::errc() && first.ptr != end && *first.ptr == between) {
+        const auto second = std::from_chars(first.ptr + 1, end, b);
+        if (second.ec == std::errc() && second.ptr == end) return {a, b};
+    }
+    throw Error(ErrorKind::Usage, flag, fmt::format("'{}' is not of the form A{}B", text, between));
+}
 
 ResolvedOptions resolve(const SceneOptions& options, CommandContext& context) {
     ResolvedOptions r;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -36,6 +37,9 @@ std::filesystem::path work_folder(const SceneOptions& options, const std::filesy
 
 // The folder or pattern that `-o` means for pictures: "DIR" and "DIR/" become DIR/NAME.png.
 std::string picture_path(const std::string& output, const std::string& name);
+
+// Two whole numbers with a letter between them: 640x360, 0:16. Throws Error{Usage} for the flag.
+std::pair<int, int> parse_pair(const std::string& text, char between, const char* flag);
 
 // Writes --stats where it was asked for.
 void finish_statistics(const RunStatistics& run, const CommandContext& context, double start);
