@@ -222,6 +222,20 @@ class Work(CliCase):
         self.assertIn("density", self.run_gischt("info", "c/smoke_0020.vdb").stdout)
         self.assertIn("20 frames", self.run_gischt("info", "c").stdout)
 
+    def test_flipbook_of_a_scene_and_of_its_cache(self):
+        small = ["--cell", "24x16", "--spp", "1", "--frames", "1-5", "--loop", "1", "--grid", "3x2"]
+        self.run_gischt("flipbook", "plume", "--set", "domain.resolution=32", *small, "--cache", "cache", "--fit", "-o", "a.png")
+        sheets = [f"a_{s}.png" for s in ("color", "depth", "light_a", "light_b", "motion")]
+        self.assertEqual([f for f in self.files() if f.startswith("a")], sorted(["a.json", *sheets]))
+        about = json.loads((self.dir / "a.json").read_text())
+        self.assertEqual((about["cells"], about["sheet"]), (4, {"width": 72, "height": 32}))
+        # The same from the cache, on one thread: the same pictures.
+        self.run_gischt("flipbook", "cache", *small, "--fit", "--threads", "1", "--layers", "color,depth", "-o", "b.png", "-o", "b.exr")
+        for sheet in ("color", "depth"):
+            self.run_gischt("compare", f"a_{sheet}.png", f"b_{sheet}.png", "--tol", "0")
+        self.assertIn("--grid", self.run_gischt("flipbook", "cache", "--grid", "1x2", "--frames", "1-5", status=2).stderr)
+        self.assertIn("'light'", self.run_gischt("flipbook", "cache", "--layers", "ligth", status=2).stderr)
+
     def test_particles_go_between_vdb_and_ply(self):
         sets = ["--set", "domain.resolution=24", "--frames", "1-3", "-q"]
         self.run_gischt("sim", "fountain", "-o", "a", *sets, "--threads", "1")

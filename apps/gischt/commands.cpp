@@ -141,8 +141,7 @@ void add_flipbook(CLI::App& app, CommandContext& context) {
                   "Values times their alpha, in place of straight alpha");
     sub->add_flag("--fit", options->fit, "Frame the fluids although the scene has a camera");
     sub->add_option("--light-scale", options->light_scale,
-                    "The value of light maps that becomes 1 (default: a white wall's)")
-        ->check(CLI::PositiveNumber);
+                    "The value of light maps that becomes 1 (default: a white wall's)");
     sub->add_option("--cache", o.cache, "Folder that keeps simulated frames (default: out/NAME)")
         ->type_name("DIR");
     sub->add_option("--frames", o.frames, "Which frames")->type_name("A-B[xSTEP]");

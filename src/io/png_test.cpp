@@ -116,5 +116,20 @@ TEST(Png, RefusesBrokenFiles) {
     });
 }
 
+// Data must come back from any reader as it is: nothing may tell it to decode a curve.
+TEST(Png, MarksColorsAsSrgbAndDataAsNothing) {
+    const TestFolder folder("png_data");
+    DisplayImage image = to_display(random_image(4, 4), {});
+    for (const bool is_srgb : {true, false}) {
+        image.is_srgb = is_srgb;
+        write_png(folder.file("a.png"), image);
+        std::ifstream in(folder.file("a.png"), std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+        for (const char* chunk : {"sRGB", "gAMA"}) {
+            EXPECT_EQ(bytes.find(chunk) != std::string::npos, is_srgb) << chunk;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace gischt

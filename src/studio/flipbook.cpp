@@ -56,7 +56,8 @@ SheetPlan plan(const LoadedScene& scene, const FlipbookOrder& order) {
                     "take --method march or path");
     }
     if (!(order.light_scale > 0) || !std::isfinite(order.light_scale))
-        throw Error(ErrorKind::Usage, "--light-scale", "must be positive");
+        throw Error(ErrorKind::Usage, "--light-scale", "must be positive",
+                    "1 keeps a white wall at 1");
 
     SheetPlan p;
     p.frames = order.frames.count();

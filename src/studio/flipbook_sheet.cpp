@@ -18,7 +18,7 @@ SheetLayout square_sheet(int cells, Vec2i cell) {
     check_sheet(layout, 1);
     const double columns = std::ceil(std::sqrt(static_cast<double>(cells) * cell.y / cell.x));
     layout.columns = std::clamp(static_cast<int>(columns), 1, std::max(cells, 1));
-    layout.rows = (cells + layout.columns - 1) / layout.columns;
+    layout.rows = cells / layout.columns + (cells % layout.columns != 0 ? 1 : 0);
     check_sheet(layout, cells);
     return layout;
 }
