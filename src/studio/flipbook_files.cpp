@@ -12,65 +12,17 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "image/color.h"
-#include "image/tone_curve.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
 #include "io/png.h"
 #include "studio/flipbook.h"
+#include "studio/flipbook_codes.h"
 
 namespace gischt {
 namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// 8-bit codes of values that are shown as they are: 0 to 1, of the channels named.
-DisplayImage data_codes(const Image& image, std::initializer_list<std::string_view> channels) {
-    DisplayImage out;
-    out.width = image.width;
-    out.height = image.height;
-    out.channels = static_cast<int>(channels.size());
-    out.is_srgb = false;
-    out.codes.resize(image.pixel_count() * channels.size());
-    std::size_t c = 0;
-    for (const std::string_view name : channels) {
-        const auto values = image.channel(name);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const float v = std::clamp(values[i], 0.0f, 1.0f);
-            out.codes[i * channels.size() + c] = static_cast<std::uint16_t>(std::lround(255 * v));
-        }
-        ++c;
-    }
-    return out;
-}
-
-std::uint16_t srgb_code(float linear) {
-    return static_cast<std::uint16_t>(
-        std::lround(255 * srgb_encode(std::clamp(linear, 0.0f, 1.0f))));
-}
-
-// Exposure, tone curve and sRGB codes, with the coverage as it is.
-DisplayImage color_codes(const Image& image, const FilmParams& film, bool premultiplied) {
-    const ToneCurve tone(film.tone);
-    const float factor = exposure_factor(film.exposure);
-    DisplayImage out{image.width, image.height, 4, 8, {}, true};
-    out.codes.resize(image.pixel_count() * 4);
-    const auto [r, g, b] = image.color();
-    const auto a = image.channel("A");
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        Vec3f light = factor * Vec3f{r[i], g[i], b[i]};
-        // The curve acts on the light of what is there, not on how much of it there is; a glow
-        // without coverage counts as full as it needs to be.
-        const float share =
-            premultiplied ? std::clamp(std::max(a[i], max_component(light)), 0.0f, 1.0f) : 1.0f;
-        if (share > 0) light = tone(light / share) * share;
-        for (int c = 0; c < 3; ++c)
-            out.codes[4 * i + static_cast<std::size_t>(c)] = srgb_code(light[c]);
-        out.codes[4 * i + 3] =
-            static_cast<std::uint16_t>(std::lround(255 * std::clamp(a[i], 0.0f, 1.0f)));
-    }
-    return out;
-}
 
 // A picture of one to three channels in R, G, B.
 Image as_rgb(const Image& sheet, std::initializer_list<std::string_view> channels) {
@@ -154,6 +106,7 @@ class SheetWriter {
     }
 
     void write_color() {
+        const FilmParams& film = scene_.scene.film;
         Image sheet = *book_.color;
         if (!order_.premultiplied) {
             if (book_.glow) {
@@ -161,7 +114,7 @@ class SheetWriter {
             }
             make_straight(sheet, book_.layout);
         }
-        save("color", sheet, color_codes(sheet, scene_.scene.film, order_.premultiplied),
+        save("color", sheet, color_codes(sheet, film.tone, film.exposure, order_.premultiplied),
              {{"channels", "RGB: radiance of all light, with what glows; A: coverage"}},
              {{"encoding", "sRGB"},
               {"tone", tone_name(scene_.scene.film.tone)},
@@ -174,14 +127,7 @@ class SheetWriter {
         float scale = 0;
         for (const auto values : sheet.color()) scale = std::max(scale, largest_of(values));
         if (!(scale > 0)) scale = 1;
-        DisplayImage codes{sheet.width, sheet.height, 3, 8, {}, true};
-        codes.codes.resize(sheet.pixel_count() * 3);
-        const auto color = sheet.color();
-        for (std::size_t i = 0; i < sheet.pixel_count(); ++i) {
-            for (std::size_t c = 0; c < 3; ++c)
-                codes.codes[3 * i + c] = srgb_code(color[c][i] / scale);
-        }
-        save("emission", sheet, codes,
+        save("emission", sheet, light_codes(sheet, scale),
              {{"channels", "RGB: radiance of what glows, to be added"}, {"unit", "W/(m^2 sr)"}},
              {{"encoding", "sRGB"}, {"scale", scale}}, {{"encoding", "linear"}, {"scale", 1}});
     }
