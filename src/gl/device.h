@@ -33,7 +33,8 @@ class GlDevice {
     // Of colour attachment 0: four floats per pixel, rows from bottom to top.
     virtual void read_pixels(GlId framebuffer, const Vec2i& size, float* rgba) = 0;
     // Compiles and links. Throws Error{Internal} whose `where` is name:line and whose text is the
-    // driver's log.
+    // driver's log. Programs of the same text are one, and live as long as the device: compiling
+    // takes up to half a second. All uniforms must be set before each use.
     virtual GlId create_program(std::string_view name, std::span<const GlStage> stages) = 0;
     virtual GlId create_timer() = 0;
     virtual void destroy(GlKind kind, GlId id) = 0;

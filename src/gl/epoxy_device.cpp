@@ -52,7 +52,7 @@ GLenum word_of(BlendFactor factor) {
                                 GL_DST_ALPHA,      GL_ONE_MINUS_DST_ALPHA,
                                 GL_CONSTANT_COLOR, GL_ONE_MINUS_CONSTANT_COLOR,
                                 GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA,
-                                GL_SRC1_COLOR,     GL_ONE_MINUS_SRC1_COLOR};
+                                GL_SRC1_COLOR,     GL_SRC1_ALPHA};
     return words[static_cast<int>(factor)];
 }
 
@@ -236,9 +236,7 @@ class EpoxyDevice : public GlDevice {
                 glDeleteFramebuffers(1, &id);
                 break;
             case GlKind::Program:
-                glDeleteProgram(id);
-                std::erase_if(locations_, [&](const auto& l) { return l.first.first == id; });
-                break;
+                break;  // kept
             case GlKind::Timer:
                 glDeleteQueries(1, &id);
                 break;
@@ -289,10 +287,13 @@ class EpoxyDevice : public GlDevice {
     }
 
   private:
+    GlId link_program(std::string_view name, std::span<const GlStage> stages);
+
     GlLimits limits_;
     GlId no_attributes_ = 0, target_ = 0;
     std::map<std::pair<GlId, std::string>, GLint> locations_;
-    std::map<GlId, GlId> timer_ends_;  // the second stamp of each
+    std::map<std::string, GlId> programs_;  // by their whole text
+    std::map<GlId, GlId> timer_ends_;       // the second stamp of each
 };
 
 GlId compile(std::string_view name, const GlStage& stage) {
@@ -315,6 +316,15 @@ GlId compile(std::string_view name, const GlStage& stage) {
 }
 
 GlId EpoxyDevice::create_program(std::string_view name, std::span<const GlStage> stages) {
+    std::string text;
+    for (const GlStage& s : stages)
+        text += fmt::format("{} {}\n", static_cast<int>(s.kind), s.source);
+    GlId& kept = programs_[text];
+    if (!kept) kept = link_program(name, stages);
+    return kept;
+}
+
+GlId EpoxyDevice::link_program(std::string_view name, std::span<const GlStage> stages) {
     const GlId program = glCreateProgram();
     try {
         for (const GlStage& stage : stages) {

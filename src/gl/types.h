@@ -49,7 +49,7 @@ enum class BlendFactor {
     ConstantAlpha,
     OneMinusConstantAlpha,
     Src1Color,
-    OneMinusSrc1Color,
+    Src1Alpha,
 };
 
 struct GlBlend {

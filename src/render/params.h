@@ -2,8 +2,10 @@
 #pragma once
 
 #include "render/field/field_params.h"
+#include "render/march/gpu_march_params.h"
 #include "render/march/march_params.h"
 #include "render/path/path_params.h"
+#include "render/slices/slices_params.h"
 #include "schema/table.h"
 
 namespace gischt {
@@ -13,6 +15,8 @@ struct RenderParams {
     MarchParams march;
     FieldParams field;
     PathParams path;
+    SlicesParams slices;
+    GpuMarchParams gpu_march;
 };
 
 const Table<RenderParams>& render_params_table();
