@@ -2,6 +2,7 @@
 #include "render/realtime/lit_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/units.h"
@@ -12,21 +13,20 @@ namespace {
 constexpr int phase_steps = 1024;  // of the table over the angle
 
 const char* const start_source = R"(
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(std430, binding = 0) readonly buffer Blocks { ivec4 block[]; };
 layout(binding = 0, rgba32f) uniform image3D source;
 layout(binding = 1) uniform sampler3D density;
 layout(binding = 2) uniform sampler3D tint;
 layout(binding = 3) uniform sampler3D emission;
 layout(binding = 4) uniform sampler3D sky;
 uniform ivec3 cells;
-uniform int is_first, has_tint, has_emission, has_sky;
+uniform int block_count, is_first, has_tint, has_emission, has_sky;
 uniform vec3 scattering;
 uniform float extinction;
 
 // What a medium takes, glows, and scatters of the sky.
-void main() {
-    ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(at, cells))) return;
+void start_cell(ivec3 at) {
     vec4 sum = vec4(0);
     if (is_first == 0) sum = imageLoad(source, at);
     else if (has_emission != 0) sum.rgb = texelFetch(emission, at, 0).rgb;
@@ -39,17 +39,28 @@ void main() {
     }
     imageStore(source, at, sum);
 }
+// A group does one block, each of its invocations a column: setting up an invocation costs llvmpipe
+// more than a cell does.
+void main() {
+    uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (b >= block_count) return;
+    ivec3 at = block[b].xyz * 8 + ivec3(gl_LocalInvocationID.xy, 0);
+    if (any(greaterThanEqual(at, cells))) return;
+    int end = min(at.z + 8, cells.z);
+    for (; at.z < end; ++at.z) start_cell(at);
+}
 )";
 
 const char* const scatter_source = R"(
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(std430, binding = 0) readonly buffer Blocks { ivec4 block[]; };
 layout(binding = 0, rgba32f) uniform image3D source;
 layout(binding = 1) uniform sampler3D density;
 layout(binding = 2) uniform sampler3D tint;
 layout(binding = 5) uniform sampler3D light;
 layout(binding = 6) uniform sampler2D phase;
 uniform ivec3 cells;
-uniform int has_tint, is_colored, is_infinite, has_arrival, is_even, octaves, first_row, rows;
+uniform int block_count, has_tint, is_colored, is_infinite, has_arrival, is_even, octaves, first_row, rows;
 uniform vec3 scattering, light_color, light_place, eye, forward, low, cell;
 uniform int is_perspective;
 uniform vec2 octave[17];  // attenuation, contribution
@@ -62,9 +73,7 @@ float phase_of(int o, float c) {
 }
 
 // What a medium scatters of one light towards the camera.
-void main() {
-    ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(at, cells))) return;
+void scatter_cell(ivec3 at) {
     float d = texelFetch(density, at, 0).r;
     if (d <= 0) return;
     vec4 l = texelFetch(light, at, 0);
@@ -87,11 +96,15 @@ void main() {
     before.rgb += s * light_color * arrival * sum;
     imageStore(source, at, before);
 }
-)";
-
-Vec3i groups_of(const Vec3i& cells) {
-    return (cells + Vec3i(7, 3, 3)) / Vec3i(8, 4, 4);
+void main() {
+    uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (b >= block_count) return;
+    ivec3 at = block[b].xyz * 8 + ivec3(gl_LocalInvocationID.xy, 0);
+    if (any(greaterThanEqual(at, cells))) return;
+    int end = min(at.z + 8, cells.z);
+    for (; at.z < end; ++at.z) scatter_cell(at);
 }
+)";
 
 // Vectors as four floats, the last one 0.
 std::vector<float> padded(const std::vector<Vec3f>& values) {
@@ -133,7 +146,9 @@ void LitVolume::upload(const LitGrid& grid) {
     if (grid.is_empty()) return;
     box_ = grid.matter.box;
     cells_ = grid.matter.cells;
-    source_ = GlTexture(device_, volume_spec(GlFormat::Rgba32F, cells_));
+    // Empty blocks are never written.
+    source_ = GlTexture(device_, volume_spec(GlFormat::Rgba32F, cells_),
+                        std::vector<float>(4 * volume(cells_)).data());
     set_phase(grid);
     upload_media(grid);
     upload_lights(grid);
@@ -252,6 +267,14 @@ void LitVolume::upload_blocks(const LitGrid& grid) {
             }
         }
     }
+    std::vector<std::array<std::int32_t, 4>> dense;
+    for (std::size_t i = 0; i < most.size(); ++i) {
+        const auto k = static_cast<int>(i);
+        if (most[i] > 0) dense.push_back({k % n.x, k / n.x % n.y, k / n.x / n.y, 0});
+    }
+    dense_blocks_ = GlBuffer(device_, dense);
+    block_count_ = static_cast<int>(dense.size());
+    groups_ = {256, block_count_ / 256 + 1, 1};
     blocks_ = GlTexture(device_, {GlShape::Volume, GlFormat::R32F, n, false}, most.data());
 }
 
@@ -263,6 +286,7 @@ void LitVolume::shade(const GlCamera& camera) {
     }
     shaded_ = camera;
     source_.bind_image(0);
+    device_.bind_storage(0, dense_blocks_.id());
     for (std::size_t m = 0; m < media_.size(); ++m) {
         media_[m].density.bind(1);
         if (!media_[m].color.is_empty()) media_[m].color.bind(2);
@@ -275,6 +299,7 @@ void LitVolume::start_medium(std::size_t m) {
     const GridMedium& constants = media_[m].constants;
     start_.use();
     start_.set("cells", cells_);
+    start_.set("block_count", block_count_);
     start_.set("is_first", m == 0 ? 1 : 0);
     start_.set("has_tint", media_[m].color.is_empty() ? 0 : 1);
     start_.set("has_emission", emission_.is_empty() ? 0 : 1);
@@ -283,7 +308,7 @@ void LitVolume::start_medium(std::size_t m) {
     start_.set("extinction", max_component(constants.extinction));
     if (!emission_.is_empty()) emission_.bind(3);
     if (!sky_.empty()) sky_[m].bind(4);
-    device_.dispatch(groups_of(cells_));
+    device_.dispatch(groups_);
     device_.barrier();
 }
 
@@ -291,6 +316,7 @@ void LitVolume::scatter_medium(const Medium& medium, const GlCamera& camera) {
     scatter_.use();
     camera.set(scatter_);
     scatter_.set("cells", cells_);
+    scatter_.set("block_count", block_count_);
     scatter_.set("has_tint", medium.color.is_empty() ? 0 : 1);
     scatter_.set("is_colored", is_grey() ? 0 : 1);
     scatter_.set("is_even", is_even_ ? 1 : 0);
@@ -313,7 +339,7 @@ void LitVolume::scatter_medium(const Medium& medium, const GlCamera& camera) {
         scatter_.set("has_arrival", light.is_everywhere ? 0 : 1);
         scatter_.set("light_color", light.color);
         scatter_.set("light_place", light.place);
-        device_.dispatch(groups_of(cells_));
+        device_.dispatch(groups_);
         device_.barrier();
     }
 }

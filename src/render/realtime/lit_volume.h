@@ -69,6 +69,9 @@ class LitVolume {
     std::vector<Light> lights_;
     std::vector<GlTexture> sky_;  // by medium
     GlTexture emission_, phase_, source_, extinction_, blocks_;
+    GlBuffer dense_blocks_;  // coordinates of the blocks that hold something
+    int block_count_ = 0;
+    Vec3i groups_;
     bool is_even_ = true;  // all phase functions
     int phase_rows_ = 0;
     std::optional<GlCamera> shaded_;

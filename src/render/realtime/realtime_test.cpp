@@ -129,9 +129,10 @@ TEST(Realtime, AbsorbsLikeBeerAndLambert) {
         view.camera = test_camera(eye, 5, 5, 4);
         Job job;
         for (const bool is_march : {false, true}) {
-            const Image image = (is_march ? make_gpu_march_method({}) : make_slices_method({}))
-                                    ->render(view, test_settings(1), job)
-                                    .image;
+            const Image image =
+                (is_march ? make_gpu_march_method(march) : make_slices_method(slices))
+                    ->render(view, test_settings(1), job)
+                    .image;
             const auto rgb = image.color();
             for (std::size_t c = 0; c < 3; ++c) {
                 EXPECT_NEAR(rgb[c][12], std::exp(-1.0 - static_cast<double>(c)), 2e-3);
