@@ -222,6 +222,47 @@ class Work(CliCase):
         self.assertIn("density", self.run_gischt("info", "c/smoke_0020.vdb").stdout)
         self.assertIn("20 frames", self.run_gischt("info", "c").stdout)
 
+    def test_particles_go_between_vdb_and_ply(self):
+        sets = ["--set", "domain.resolution=24", "--frames", "1-3", "-q"]
+        self.run_gischt("sim", "fountain", "-o", "a", *sets, "--threads", "1")
+        self.run_gischt("sim", "fountain", "-o", "b", *sets, "--threads", "2")
+        last = "water_0003.vdb"
+        self.assertEqual((self.dir / "a" / last).read_bytes(), (self.dir / "b" / last).read_bytes())
+        line = [x for x in self.run_gischt("info", f"a/{last}").stdout.splitlines() if "points with" in x][0]
+        count = line.split()[1]
+        for name in ("age", "id", "life", "pscale", "v"):
+            self.assertIn(name, line)
+
+        self.run_gischt("convert", f"a/{last}", "-o", "drops.ply")
+        self.assertIn(f"{count} points", self.run_gischt("info", "drops.ply").stdout)
+        self.run_gischt("convert", "drops.ply", "-o", "drops.vdb", "--cell", "0.1")
+        back = self.run_gischt("info", "drops.vdb").stdout
+        self.assertIn(f"{count} points", back)
+        self.assertIn("density", back)
+        self.run_gischt("render", "drops.ply", "--set", "up=z", "-o", "drops.png", "--size", "32x24", "--spp", "1")
+        self.run_gischt("convert", "a/water_####.vdb", "--frames", "1-3", "-o", "c.ply")
+        self.assertTrue(all((self.dir / f"c_000{i}.ply").exists() for i in (1, 2, 3)))
+
+        self.assertIn("did you mean '.ply'", self.run_gischt("convert", "drops.ply", "-o", "x.plt", status=2).stderr)
+        self.run_gischt("convert", "missing.ply", "-o", "x.vdb", status=3)
+        self.write("mesh.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n")
+        self.assertIn("no points", self.run_gischt("convert", "mesh.ply", "-o", "x.vdb", status=3).stderr)
+        self.assertFalse((self.dir / "x.vdb").exists())
+
+    def test_bad_particles_are_refused_by_name(self):
+        for change, word in (
+            ("motion=inertal", "did you mean 'inertial'"),
+            ("contact.kind=bonce", "did you mean 'bounce'"),
+            ("flow.fluid=smoke", "no fluid 'smoke'"),
+            ("fluid.water.source.0.shape=disk", "did you mean 'disc'"),
+            ("fluid.water.source.0.rates=3", "did you mean 'rate'"),
+            ("fluid.water.source.0.speed=nan", "speed"),
+            ("most_particles=10", "raise 'most_particles'"),
+        ):
+            out = self.dir / change.split("=")[0]
+            done = self.run_gischt("sim", "fountain", "-o", out, "--frames", "1-1", "--set", change, status=2)
+            self.assertIn(word, done.stderr, change)
+
     def test_cloud_takes_a_real_volume(self):
         self.run_gischt("render", "cloud", "--set", "fluid.resolution=24", "--size", "32x20", "--spp", 1, "-o", "a.exr")
         self.run_gischt("sim", "plume", "--set", "domain.resolution=32", "--frames", "1-8", "-o", "c")

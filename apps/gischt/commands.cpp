@@ -90,9 +90,9 @@ void add_sim(CLI::App& app, CommandContext& context) {
 void add_render(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<SceneOptions>();
     CLI::App* sub = app.add_subcommand(
-        "render", "Render one frame or a range of a scene, a .vdb file or a cache");
+        "render", "Render one frame or a range of a scene, a .vdb or .ply file or a cache");
     sub->add_option("TARGET", options->target,
-                    "A scene, a .vdb file (or pattern name_####.vdb), or a cache folder")
+                    "A scene, a .vdb or .ply file (or pattern name_####.vdb), or a cache folder")
         ->required();
     sub->add_option(
            "-o,--output", options->outputs,
@@ -130,7 +130,7 @@ void add_info(CLI::App& app, CommandContext& context) {
     CLI::App* sub =
         app.add_subcommand("info", "What is in a .vdb, an image, a film, a cache or a scene");
     sub->add_option("FILE", *target,
-                    "A .vdb, .exr, .png, .hdr or .film file, a cache folder, or a scene")
+                    "A .vdb, .ply, .exr, .png, .hdr or .film file, a cache folder, or a scene")
         ->required();
     sub->callback([target, &context] {
         context.action = [target, &context] { return print_info(*target, context.job); };
@@ -153,6 +153,27 @@ void add_merge(CLI::App& app, CommandContext& context) {
         context.action = [options, &context] {
             return merge_films(*options, context.command_line);
         };
+    });
+}
+
+// gischt convert A -o B
+void add_convert(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<ConvertOptions>();
+    CLI::App* sub = app.add_subcommand(
+        "convert", "Particles from .vdb to .ply and back; a .vdb gets their density too");
+    sub->add_option("FROM", options->from, "A .vdb or .ply file, or a pattern name_####.vdb")
+        ->required();
+    sub->add_option("-o,--output", options->to, "A .vdb or .ply file; frames get their number")
+        ->required()
+        ->type_name("FILE");
+    sub->add_option("--frames", options->frames, "Which frames of a pattern")
+        ->type_name("A-B[xSTEP]");
+    sub->add_option("--cell", options->cell_size, "Edge of the density's cells in metres")
+        ->check(CLI::PositiveNumber);
+    sub->add_flag("--foreign", options->foreign,
+                  "Take points that other programs wrote; such files cannot be checked");
+    sub->callback([options, &context] {
+        context.action = [options, &context] { return convert_volume(*options, context); };
     });
 }
 
@@ -218,6 +239,7 @@ std::optional<int> parse(int argc, char** argv, CommandContext& context) {
     add_check(app, context);
     add_info(app, context);
     add_merge(app, context);
+    add_convert(app, context);
     add_compare(app, context);
     add_scenes(app, context);
     add_doc(app, context);

@@ -21,6 +21,12 @@ struct CompareOptions {
     std::string a, b;
     std::optional<double> tolerance;  // of the RMSE
 };
+struct ConvertOptions {
+    std::string from, to;
+    std::string frames;    // of patterns
+    double cell_size = 0;  // m, of particles that become a density; 0 chooses
+    bool foreign = false;  // take points that other programs wrote
+};
 struct DocOptions {
     std::string address;
     bool markdown = false, json_schema = false;
@@ -33,6 +39,7 @@ int render_target(const SceneOptions& options, CommandContext& context);
 int check_scene(const SceneOptions& options, CommandContext& context);
 int print_info(const std::string& target, Job& job);
 int merge_films(const MergeOptions& options, const std::string& command);
+int convert_volume(const ConvertOptions& options, CommandContext& context);
 int compare_images(const CompareOptions& options);
 int print_scenes(const std::string& name);
 int print_doc(const DocOptions& options);

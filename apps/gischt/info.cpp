@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "io/film_file.h"
 #include "io/image_file.h"
+#include "io/ply.h"
 #include "io/vdb.h"
 #include "scene/load.h"
 #include "studio/cache.h"
@@ -20,6 +21,11 @@ void print_volume(const std::string& path, Job& job) {
     fmt::print("{}: OpenVDB file, format {}, library {}\n", path, info.format, info.library);
     for (const auto& [key, value] : info.metadata) fmt::print("  {} = {}\n", key, value);
     for (const VdbGridInfo& g : info.grids) {
+        if (g.points >= 0) {
+            fmt::print("  {:<14} {} points with {}\n", g.name, g.points,
+                       fmt::join(g.attributes, ", "));
+            continue;
+        }
         fmt::print("  {:<14} {}{}, {}, {} active voxels", g.name, g.type,
                    g.is_half ? " (half)" : "", g.grid_class, g.active_voxels);
         if (g.active_voxels > 0) {
@@ -29,6 +35,17 @@ void print_volume(const std::string& path, Job& job) {
         if (g.min <= g.max) fmt::print(", {:g} to {:g}", g.min, g.max);
         fmt::print("{}\n", g.is_readable ? "" : "; left out: " + g.note);
     }
+}
+
+void print_particles(const std::string& path) {
+    const Particles p = read_ply_particles(path);
+    fmt::print("{}: {} points{}{}{}\n", path, p.size(), p.color.empty() ? "" : ", coloured",
+               p.opacity.empty() ? "" : ", with opacity",
+               p.temperature.empty() ? "" : ", with temperature");
+    if (p.is_empty()) return;
+    const Box3d b = p.bounds();
+    fmt::print("  {:.4g} {:.4g} {:.4g} to {:.4g} {:.4g} {:.4g} m\n", b.lo.x, b.lo.y, b.lo.z, b.hi.x,
+               b.hi.y, b.hi.z);
 }
 
 void print_image(const std::string& path) {
@@ -85,6 +102,8 @@ int print_info(const std::string& target, Job& job) {
     const std::string extension = fs::path(target).extension().string();
     if (extension == ".vdb" || extension == ".nvdb")
         print_volume(target, job);
+    else if (extension == ".ply")
+        print_particles(target);
     else if (is_image_file(target))
         print_image(target);
     else if (is_film_file(target))

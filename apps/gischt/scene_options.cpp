@@ -78,7 +78,7 @@ std::vector<std::string> overrides_of(const SceneOptions& o, const CommandContex
 
 bool looks_like_volume(const std::string& target) {
     const std::string extension = fs::path(target).extension().string();
-    return extension == ".vdb" || extension == ".nvdb";
+    return extension == ".vdb" || extension == ".nvdb" || extension == ".ply";
 }
 
 Order order_of(const SceneOptions& o, const CommandContext& context) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cstring>
 #include <fstream>
 
 #include "base/hash.h"
@@ -34,26 +33,6 @@ void for_arrays(State& s, F&& f) {
     f(s.density.values.values());
     f(s.temperature.values.values());
 }
-
-// FNV-1a over 64-bit words instead of bytes: eight times as fast, and as good against truncation
-// and flipped bits.
-class WordHash {
-  public:
-    void add(const void* data, std::size_t bytes) {
-        const auto* p = static_cast<const char*>(data);
-        for (; bytes >= 8; bytes -= 8, p += 8) {
-            std::uint64_t word;
-            std::memcpy(&word, p, 8);
-            hash_ = (hash_ ^ word) * 0x100000001b3ULL;
-            hash_ ^= hash_ >> 29;
-        }
-        hash_ = hash_bytes({p, bytes}, hash_);
-    }
-    std::uint64_t value() const { return hash_; }
-
-  private:
-    std::uint64_t hash_ = 0xcbf29ce484222325ULL;
-};
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grid/field.h"
+#include "grid/particles.h"
 #include "math/transform.h"
 
 namespace gischt {
@@ -40,6 +41,7 @@ struct Frame {
     double time = 0;  // s
     double dt = 0;    // s to the next frame; 0: unknown
     std::map<std::string, Field> fields;
+    std::map<std::string, Particles> particles;
     std::map<std::string, std::string> metadata;  // creator, version, scene hash, units ...
 
     const Field* find(const std::string& name) const {

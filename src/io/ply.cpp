@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -89,6 +91,25 @@ class PlyReader {
         }
         if (mesh.triangles.empty()) fail("has no faces");
         return mesh;
+    }
+
+    Particles read_particles() {
+        read_header();
+        Particles particles;
+        bool has_points = false;
+        for (const Element& e : elements_) {
+            check_room(e);
+            if (e.name == "vertex" && !has_points) {
+                read_particles(e, particles);
+                has_points = true;
+                continue;
+            }
+            for (std::size_t i = 0; i < e.count; ++i) {
+                for (const Property& p : e.properties) skip(p);
+            }
+        }
+        if (!has_points) fail("has no points");
+        return particles;
     }
 
   private:
@@ -269,6 +290,63 @@ class PlyReader {
             if (velocities) mesh.velocities.emplace_back(v[8], v[9], v[10]);
         }
     }
+    // Where a particle's numbers go; `Unused` for what it does not have.
+    enum Slot { X, Y, Z, Vx, Vy, Vz, Age, Life, Radius, Id, Opacity, Kelvin, R, G, B, Unused };
+
+    static Slot slot_of(const Property& p) {
+        static constexpr std::string_view names[] = {
+            "x",      "y",  "z",       "vx",          "vy",  "vz",    "age", "life",
+            "radius", "id", "opacity", "temperature", "red", "green", "blue"};
+        const auto* found = std::find(std::begin(names), std::end(names), p.name);
+        auto slot = static_cast<Slot>(found - std::begin(names));
+        if (p.name == "pscale") slot = Radius;
+        const bool is_real = p.type == Number::Float32 || p.type == Number::Float64;
+        return p.list_count || (slot >= R && !is_real) ? Unused : slot;
+    }
+    void read_particles(const Element& e, Particles& out) {
+        std::vector<Slot> slots;
+        bool has[Unused + 1] = {};
+        for (const Property& p : e.properties) {
+            slots.push_back(slot_of(p));
+            has[slots.back()] = true;
+        }
+        if (!(has[X] && has[Y] && has[Z])) fail("has points without x, y and z");
+        if (has[R] && has[G] && has[B]) out.color.resize(1);
+        if (has[Opacity]) out.opacity.resize(1);
+        if (has[Kelvin]) out.temperature.resize(1);
+        out.resize(e.count);
+        for (std::size_t i = 0; i < e.count; ++i) {
+            double v[Unused + 1] = {};
+            v[Radius] = 0.01;
+            v[Life] = std::numeric_limits<double>::infinity();
+            v[Id] = static_cast<double>(i);
+            for (std::size_t k = 0; k < slots.size(); ++k) {
+                if (slots[k] == Unused) {
+                    skip(e.properties[k]);
+                    continue;
+                }
+                v[slots[k]] = number(e.properties[k].type);
+                if (!std::isfinite(v[slots[k]]) && slots[k] != Life) {
+                    fail("has a number that is not finite");
+                }
+            }
+            set_particle(v, i, out);
+        }
+    }
+    void set_particle(const double* v, std::size_t i, Particles& out) const {
+        const auto number_at = [v](Slot s) { return static_cast<float>(v[s]); };
+        // From here on the id would not fit its integer.
+        if (!(v[Id] >= 0 && v[Id] < 0x1p63)) fail("has an id that is no number of a thing");
+        out.position[i] = {v[X], v[Y], v[Z]};
+        out.velocity[i] = {number_at(Vx), number_at(Vy), number_at(Vz)};
+        out.age[i] = number_at(Age);
+        out.life[i] = number_at(Life);
+        out.radius[i] = number_at(Radius);
+        out.id[i] = static_cast<std::uint64_t>(v[Id]);
+        if (!out.color.empty()) out.color[i] = {number_at(R), number_at(G), number_at(B)};
+        if (!out.opacity.empty()) out.opacity[i] = number_at(Opacity);
+        if (!out.temperature.empty()) out.temperature[i] = number_at(Kelvin);
+    }
     void read_faces(const Element& e, Mesh& mesh) {
         std::vector<int> corners;
         for (std::size_t i = 0; i < e.count; ++i) {
@@ -304,6 +382,10 @@ class PlyReader {
 
 Mesh read_ply(const std::string& path) {
     return PlyReader(path).read();
+}
+
+Particles read_ply_particles(const std::string& path) {
+    return PlyReader(path).read_particles();
 }
 
 }  // namespace gischt

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "grid/particles.h"
 #include "shape/mesh.h"
 
 namespace gischt {
@@ -13,5 +14,17 @@ namespace gischt {
 // for what is no such file, truncated, broken or without faces, and for an index of a point that
 // does not exist.
 Mesh read_ply(const std::string& path);
+
+// The points of such a file as particles: x, y, z; velocities vx, vy, vz; age, life; radius (or
+// pscale, as Houdini calls it); id; opacity; temperature; colours red, green, blue where they are
+// floats (linear; those of 8 bits are left out). What is missing is 0, the radius 0.01 m, the life
+// infinite, the id the number of the point. Other elements are left out. Throws as read_ply(), and
+// Error{Input} for a number that is not finite (but a life).
+Particles read_ply_particles(const std::string& path);
+
+// Writes particles under the names that the reader knows, binary and little-endian: positions and
+// the id as doubles (PLY has no whole numbers of 64 bits; exact below 2^53), the rest as floats.
+// The file appears when complete. Throws Error{Resource} when it cannot write.
+void write_ply_particles(const std::string& path, const Particles& particles);
 
 }  // namespace gischt

@@ -13,9 +13,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/parallel.h"
-#include "base/random.h"
 #include "base/version.h"
 #include "io/atomic_file.h"
 #include "io/vdb_check.h"
@@ -23,6 +21,8 @@
 #include "io/vdb_grid.h"
 #include "io/vdb_header.h"
 #include "io/vdb_names.h"
+#include "io/vdb_points.h"
+#include "io/vdb_stamp.h"
 #include "io/vdb_to_tree.h"
 
 namespace gischt {
@@ -138,6 +138,9 @@ bool is_known_type(const std::string& type) {
 std::string why_not(const VdbEntry& entry) {
     if (entry.transform == "NonlinearFrustumMap") return "its transform is not affine";
     if (is_known_type(entry.type)) return {};
+    if (is_point_type(entry.type)) {
+        return "points that gischt did not write, or that were altered: points.foreign reads them";
+    }
     return fmt::format("type '{}' has no place in a frame", entry.value_type());
 }
 
@@ -209,6 +212,28 @@ std::vector<int> wanted_entries(const VdbHeader& header, const VdbReadOptions& o
     return out;
 }
 
+// The grids of points. The library trusts what is in them, and their pages cannot be checked from
+// outside: without leave only files are read that are to the last bit as gischt wrote them.
+std::map<std::string, Particles> read_points(const std::string& path, const VdbHeader& header,
+                                             bool trusts_all, std::vector<int>& wanted) {
+    std::vector<int> points;
+    for (const int w : wanted) {
+        if (is_point_type(header.grids[static_cast<std::size_t>(w)].type)) points.push_back(w);
+    }
+    std::map<std::string, Particles> out;
+    if (points.empty() || (!trusts_all && !has_vdb_stamp(path))) return out;
+    std::erase_if(wanted, [&](int w) { return std::ranges::find(points, w) != points.end(); });
+    openvdb::io::File file(path);
+    for (const int p : points) {
+        const VdbEntry& entry = header.grids[static_cast<std::size_t>(p)];
+        out[entry.name] = guarded(path, entry.name, [&] {
+            if (!file.isOpen()) file.open(false);
+            return from_point_grid(*file.readGrid(entry.unique_name));
+        });
+    }
+    return out;
+}
+
 // ---- looking --------------------------------------------------------------------------
 
 // What the file itself says of a grid that the library does not know.
@@ -222,6 +247,18 @@ void describe_unknown(const VdbEntry& entry, VdbGridInfo& info) {
     std::sscanf(text("file_bbox_max").c_str(), "%d %d %d", &info.hi[0], &info.hi[1], &info.hi[2]);
 }
 
+void describe_point_grid(const std::string& path, const VdbEntry& entry, VdbGridInfo& info) {
+    guarded(path, entry.name, [&] {
+        openvdb::io::File file(path);
+        file.open(false);
+        const auto grid = file.readGrid(entry.unique_name);
+        const PointGridInfo points = describe_points(*grid);
+        info.points = points.count;
+        info.attributes = points.attributes;
+        info.voxel_size.fill(grid->voxelSize().x());
+    });
+}
+
 VdbGridInfo grid_info(const std::string& path, const VdbHeader& header, const VdbEntry& entry,
                       Job& job) {
     VdbGridInfo info;
@@ -231,7 +268,13 @@ VdbGridInfo grid_info(const std::string& path, const VdbHeader& header, const Vd
     info.is_half = entry.is_half;
     info.metadata = entry.metadata;
     info.note = why_not(entry);
+    if (is_point_type(entry.type) && has_vdb_stamp(path)) info.note.clear();
     info.is_readable = info.note.empty();
+    if (is_point_type(entry.type) && info.is_readable) {
+        describe_unknown(entry, info);
+        describe_point_grid(path, entry, info);
+        return info;
+    }
     if (!info.is_readable) {
         describe_unknown(entry, info);
         return info;
@@ -344,25 +387,10 @@ openvdb::MetaMap file_metadata(const Frame& frame) {
     return out;
 }
 
-// The library names each file by a random UUID. One made of the content keeps the bytes a function
-// of the frame.
-void stamp_uuid(const std::string& file) {
-    constexpr std::streamoff uuid_at = 8 + 4 + 4 + 4 + 1, content_at = uuid_at + 36;
-    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
-    stream.seekg(content_at);
-    std::uint64_t hash = hash_bytes("gischt");
-    std::vector<char> block(1 << 20);
-    while (stream) {
-        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-        hash = hash_bytes({block.data(), static_cast<std::size_t>(stream.gcount())}, hash);
-    }
-    stream.clear();
-    const std::string h = hex(hash) + hex(mix64(hash));
-    stream.seekp(uuid_at);
-    stream << h.substr(0, 8) << '-' << h.substr(8, 4) << '-' << h.substr(12, 4) << '-'
-           << h.substr(16, 4) << '-' << h.substr(20);
-    stream.close();
-    if (!stream) throw std::runtime_error("it cannot be written");
+// The edge of the voxels that particles are sorted into: of the cells that they became.
+double point_voxel_size(const Frame& frame) {
+    const Field* density = frame.find("density");
+    return density ? density->cell_size() : 0.1;
 }
 
 void save(const std::string& file, const openvdb::GridCPtrVec& grids,
@@ -373,7 +401,7 @@ void save(const std::string& file, const openvdb::GridCPtrVec& grids,
                        (has_blosc ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP));
     out.write(grids, metadata);
     out.close();
-    stamp_uuid(file);
+    stamp_vdb(file);
 }
 
 }  // namespace
@@ -382,7 +410,8 @@ Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job)
     const PhaseTimer timer(job, "read");
     openvdb::initialize();
     const VdbHeader header = read_vdb_header(path);
-    const std::vector<int> wanted = wanted_entries(header, options);
+    std::vector<int> wanted = wanted_entries(header, options);
+    auto particles = read_points(path, header, options.foreign_points, wanted);
 
     // Grids in parallel: decompression within one is serial in the library.
     Reading reading{path, job, {path, options.max_values}};
@@ -405,7 +434,9 @@ Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job)
         (options.half_voxel == HalfVoxel::Auto && leaves_it_out)) {
         for (VdbGrid& grid : grids) shift_half_voxel(grid.field);
     }
-    return assemble_frame(std::move(grids), header, path, options.customary, job);
+    Frame frame = assemble_frame(std::move(grids), header, path, options.customary, job);
+    frame.particles = std::move(particles);
+    return frame;
 }
 
 VdbInfo list_vdb(const std::string& path, Job& job) {
@@ -435,6 +466,10 @@ void write_vdb(const std::string& path, const Frame& frame, const VdbWriteOption
         job.progress(
             0.5 * static_cast<double>(grids.size()) / static_cast<double>(frame.fields.size()),
             "write");
+    }
+    for (const auto& [name, particles] : frame.particles) {
+        job.check();
+        grids.push_back(to_point_grid(particles, name, point_voxel_size(frame)));
     }
     AtomicFile file(path);
     try {

@@ -32,13 +32,19 @@ struct VdbReadOptions {
     // Values that the frame may hold, all grids together: uniform tiles of the file's tree are
     // spelled out, and a file of some bytes may stand for terabytes. 2^30 floats are 4 GiB.
     std::int64_t max_values = std::int64_t{1} << 30;
+    // Also points that others wrote. The library trusts what is in them, and nothing here can check
+    // it: a damaged file may end the program.
+    bool foreign_points = false;
 };
 
-// Reads one .vdb file (file format 222 to 224, OpenVDB 3 and later). Grid types that have no place
-// in a frame (points ...), transforms that are not affine and grids not asked for are left out, the
-// first two with a message; a grid without values is kept with an empty map. Numbers that are not
-// finite become the background, with a warning. Throws Error{Input} for what is not a whole and
-// sound VDB file, Error{Resource} beyond max_values. Cost: about 1 s per 150 MB of values.
+// Reads one .vdb file (file format 222 to 224, OpenVDB 3 and later). Grids of points become
+// particles in ascending order of their ids, with positions to about 1e-7 of a voxel, where
+// gischt wrote the file and nobody changed it, or options.foreign_points is set. Grid types that
+// have no place in a frame (points of others ...), transforms that are not affine and grids not
+// asked for are left out, the first two with a message; a grid without values is kept with an empty
+// map. Numbers that are not finite become the background, with a warning. Throws Error{Input} for
+// what is not a whole and sound VDB file, Error{Resource} beyond max_values. Cost: about 1 s per
+// 150 MB of values.
 Frame read_vdb(const std::string& path, const VdbReadOptions& options, Job& job);
 
 struct VdbWriteOptions {
@@ -49,9 +55,10 @@ struct VdbWriteOptions {
     bool half_voxel = true;
 };
 
-// Writes a frame: named grids with customary metadata (docs/vdb.md), Blosc-compressed where the
-// library has it. Cells equal to the background are left inactive. The file appears under its name
-// when complete. The same frame gives the same bytes. Throws Error{Resource} when it cannot write.
+// Writes a frame: particles as grids of points, and named grids with customary metadata
+// (docs/vdb.md), Blosc-compressed where the library has it. Cells equal to the background are left
+// inactive. The file appears under its name when complete. The same frame gives the same bytes.
+// Throws Error{Resource} when it cannot write.
 void write_vdb(const std::string& path, const Frame& frame, const VdbWriteOptions& options,
                Job& job);
 
@@ -69,6 +76,8 @@ struct VdbGridInfo {
     std::array<double, 3> origin{};  // where the transform puts index (0,0,0)
     // Range of the active values; of a vector the shortest and longest. min > max: there is none.
     double min = 0, max = -1;
+    std::int64_t points = -1;             // how many, where it holds such that read_vdb() takes
+    std::vector<std::string> attributes;  // of the points, as in the file
     std::map<std::string, std::string> metadata;
 };
 

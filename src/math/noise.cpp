@@ -116,6 +116,47 @@ float cellular_noise(const Vec3d& p, std::uint64_t seed) {
     return static_cast<float>(std::sqrt(nearest));
 }
 
+// An edge direction of a cube by 16 random bits, from a table: the choice cannot be foreseen.
+static const Vec3d& edge_direction(std::uint64_t bits) {
+    static constexpr Vec3d edges[12] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0},
+                                        {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+                                        {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}};
+    return edges[(bits & 0xffff) * 12 >> 16];
+}
+
+Vec3d curl_of_noise(const Vec3d& p, std::uint64_t seed) {
+    const Vec3i c = floor(p);
+    const Vec3d f = p - Vec3d(c);
+    // Weights of the lower and the upper corner along each axis, and their slopes.
+    double weight[3][2], slope[3][2];
+    for (int a = 0; a < 3; ++a) {
+        const double t = f[a], fade = t * t * t * (t * (t * 6 - 15) + 10),
+                     rise = 30 * t * t * (1 - t) * (1 - t);
+        weight[a][0] = 1 - fade;
+        weight[a][1] = fade;
+        slope[a][0] = -rise;
+        slope[a][1] = rise;
+    }
+    Vec3d curl;
+    for (int k = 0; k < 2; ++k) {
+        for (int j = 0; j < 2; ++j) {
+            for (int i = 0; i < 2; ++i) {
+                // Each corner gives the potential w N(d), N(d) = (g0.d, g1.d, g2.d), whose curl is
+                // grad w x N + w curl N.
+                const std::uint64_t hash = lattice_hash(c.x + i, c.y + j, c.z + k, seed);
+                const Vec3d &g0 = edge_direction(hash), &g1 = edge_direction(hash >> 16),
+                            &g2 = edge_direction(hash >> 32);
+                const Vec3d d = f - Vec3d(Vec3i(i, j, k));
+                const double x = weight[0][i], y = weight[1][j], z = weight[2][k];
+                const Vec3d gradient(slope[0][i] * y * z, x * slope[1][j] * z, x * y * slope[2][k]);
+                curl += cross(gradient, Vec3d(dot(g0, d), dot(g1, d), dot(g2, d))) +
+                        (x * y * z) * Vec3d(g2.y - g1.z, g0.z - g2.x, g1.x - g0.y);
+            }
+        }
+    }
+    return curl;
+}
+
 // The point of one cell at a moment. An arcsine distribution at any time, as the phases are even.
 static Vec3d swinging_point(const Vec3i& cell, double w, std::uint64_t seed) {
     const std::uint64_t key = lattice_hash(cell.x, cell.y, cell.z, seed);

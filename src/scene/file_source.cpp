@@ -3,14 +3,18 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "io/ply.h"
+
 namespace gischt {
 
 const Table<FileParams>& file_table() {
     using P = FileParams;
     static const Table<P> table =
-        Table<P>("file", "VDB files made elsewhere, or by gischt")
+        Table<P>("file", "VDB files made elsewhere, or by gischt; or particles in PLY files")
             .add("file", &P::file,
-                 {.help = "Path of the VDB file; '####' or '%04d' stands for the frame number",
+                 {.help =
+                      "Path of the .vdb or .ply file; '####' or '%04d' stands for the frame number",
                   .required = true})
             .add("frame_offset", &P::frame_offset, {.help = "Added to the scene's frame number"})
             .choice("half_voxel", &P::half_voxel,
@@ -19,7 +23,8 @@ const Table<FileParams>& file_table() {
                       "the transform places sample (i,j,k), as OpenVDB defines it"},
                      {"center", HalfVoxel::Center,
                       "the transform places cell corners: samples lie half a voxel further"}},
-                    {.help = "Where the file's samples lie"});
+                    {.help = "Where the file's samples lie"})
+            .sub("points", &P::points, file_points_table(), {.help = "Particles in it"});
     return table;
 }
 
@@ -51,9 +56,17 @@ std::string file_of_frame(const FileParams& params, int frame) {
 }
 
 Frame read_file_frame(const FileParams& params, int frame, Job& job) {
-    VdbReadOptions options;
-    options.half_voxel = params.half_voxel;
-    Frame out = read_vdb(file_of_frame(params, frame), options, job);
+    const std::string path = file_of_frame(params, frame);
+    Frame out;
+    if (path.ends_with(".ply")) {
+        out.particles["particles"] = read_ply_particles(path);
+    } else {
+        VdbReadOptions options;
+        options.half_voxel = params.half_voxel;
+        options.foreign_points = params.points.foreign;
+        out = read_vdb(path, options, job);
+    }
+    if (out.fields.empty()) splat_file_points(params.points, out, job);
     out.number = frame;
     return out;
 }

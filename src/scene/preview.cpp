@@ -20,6 +20,9 @@ struct ResolutionOf {
     Found operator()(const FluidOf<CloudParams>& f) const {
         return {"resolution", f.source.resolution};
     }
+    Found operator()(const FluidOf<ParticleParams>& f) const {
+        return {"domain.resolution", f.source.domain.resolution};
+    }
     Found operator()(const FluidOf<ProceduralParams>& f) const {
         return {"resolution", f.source.resolution};
     }

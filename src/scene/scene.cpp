@@ -47,6 +47,7 @@ const Variants<FluidSection>& fluid_variants() {
             .add("smoke", fluid_table(smoke_table()))
             .add("file", fluid_table(file_table()))
             .add("cloud", fluid_table(cloud_table()))
+            .add("particles", fluid_table(particle_table()))
             .add("procedural", fluid_table(procedural_table()));
     return variants;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fluid/cloud.h"
+#include "fluid/particles/particle_params.h"
 #include "fluid/procedural/params.h"
 #include "fluid/smoke.h"
 #include "image/filter.h"
@@ -45,7 +46,7 @@ struct FluidOf {
     P source;
 };
 using FluidSection = std::variant<FluidOf<SmokeParams>, FluidOf<FileParams>, FluidOf<CloudParams>,
-                                  FluidOf<ProceduralParams>>;
+                                  FluidOf<ProceduralParams>, FluidOf<ParticleParams>>;
 
 FluidCommon& common_of(FluidSection& fluid);
 const FluidCommon& common_of(const FluidSection& fluid);

@@ -2,9 +2,11 @@
 #include "scene/world.h"
 
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "base/units.h"
+#include "fluid/particles/particle_source.h"
 #include "fluid/procedural/procedural.h"
 #include "fluid/smoke_source.h"
 #include "io/image_file.h"
@@ -115,16 +117,54 @@ std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& f
 struct SourceOf {
     const Scene& scene;
 
-    std::unique_ptr<FluidSource> operator()(const FluidOf<SmokeParams>& f) const {
+    // The scene as a fluid of that name meets it.
+    FluidWorld world_of(const std::string& name) const {
         FluidWorld world;
         world.fps = scene.fps;
         world.gravity = scene.gravity_vector();
         for (const SurfaceParams& s : scene.solids) {
-            if (const auto solid = solid_of(s, f.common.name, scene.up_vector())) {
+            if (const auto solid = solid_of(s, name, scene.up_vector())) {
                 world.solids.push_back(*solid);
             }
         }
-        return std::make_unique<SmokeSource>(f.source, world);
+        return world;
+    }
+    std::unique_ptr<FluidSource> operator()(const FluidOf<SmokeParams>& f) const {
+        return std::make_unique<SmokeSource>(f.source, world_of(f.common.name));
+    }
+    std::unique_ptr<FluidSource> operator()(const FluidOf<ParticleParams>& f) const {
+        ParticleInputs inputs;
+        for (const SpoutParams& s : f.source.sources) {
+            Job unheard;  // what is said of a mesh is about its colours
+            inputs.meshes.push_back(s.kind == SpoutKind::Mesh ? read_mesh(s.file, unheard).mesh
+                                                              : Mesh{});
+        }
+        inputs.flow = flow_for(f.source.flow);
+        return std::make_unique<ParticleSource>(f.source, world_of(f.common.name),
+                                                std::move(inputs));
+    }
+    // Frames of the fluid that carries particles. A fluid of the scene is computed again for them.
+    std::function<std::shared_ptr<const Frame>(int, Job&)> flow_for(const FlowParams& flow) const {
+        if (!flow.file.empty()) {
+            FileParams files;
+            files.file = flow.file;
+            return [files](int number, Job& job) {
+                return std::make_shared<const Frame>(read_file_frame(files, number, job));
+            };
+        }
+        if (flow.fluid.empty()) return {};
+        std::vector<std::string> names;
+        for (const FluidSection& other : scene.fluids) {
+            if (std::holds_alternative<FluidOf<ParticleParams>>(other)) continue;
+            names.push_back(common_of(other).name);
+            if (names.back() != flow.fluid) continue;
+            return [source = std::shared_ptr<FluidSource>(std::visit(*this, other))](int number,
+                                                                                     Job& job) {
+                return std::make_shared<const Frame>(source->frame(number, job));
+            };
+        }
+        throw Error(ErrorKind::Usage, "flow", "no fluid '" + flow.fluid + "' that could carry",
+                    hint_for(flow.fluid, names));
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<FileParams>& f) const {
         return std::make_unique<StatelessSource>([params = f.source](int number, Job& job) {
@@ -164,11 +204,13 @@ bool is_computed(const FluidSection& fluid) {
 }
 
 void report_unmet_solids(const Scene& scene, const FluidSection& fluid, Job& job) {
-    if (!std::holds_alternative<FluidOf<SmokeParams>>(fluid)) return;
+    const bool is_smoke = std::holds_alternative<FluidOf<SmokeParams>>(fluid);
+    if (!is_smoke && !std::holds_alternative<FluidOf<ParticleParams>>(fluid)) return;
     for (const SurfaceParams& s : scene.solids) {
         const auto* mesh = std::get_if<MeshSurface>(&s);
         if (!mesh || mesh->material.kind == MaterialKind::None) continue;
-        job.warn("solid '" + mesh->name + "' is a mesh: seen, but the smoke passes through it");
+        job.warn("solid '" + mesh->name + "' is a mesh: seen, but the " +
+                 (is_smoke ? "smoke passes" : "particles pass") + " through it");
     }
 }
 
@@ -255,6 +297,11 @@ static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& f
     const double scale = std::cbrt(placement.determinant());
     Transform rotation = placement;
     for (Vec3d& c : rotation.column) c = c / scale;
+    for (auto& [name, particles] : out->particles) {
+        for (Vec3d& p : particles.position) p = placement.point(p);
+        for (Vec3f& v : particles.velocity) v = Vec3f(placement.vector(Vec3d(v)));
+        for (float& r : particles.radius) r *= static_cast<float>(scale);
+    }
     for (auto& [name, field] : out->fields) {
         field.to_world = placement * field.to_world;
         if (field.is_vector() && name == "velocity") map_vectors(field, placement);

@@ -122,5 +122,54 @@ TEST(World, BlursFluidsByTheirVelocity) {
     EXPECT_TRUE(World(still, job).view({frame_of(5, true)}, 1, job).moving_media.empty());
 }
 
+// A cloud of gas blows along x and carries the particles that another fluid gives.
+TEST(World, ParticlesGoWithAnotherFluidOfTheScene) {
+    const std::string text = R"(
+[[fluid]]
+name = "air"
+type = "smoke"
+initial_velocity = [1, 0, 0]
+output = { velocity = "all" }
+domain = { resolution = 16, min = [0, 0, 0], max = [1, 1, 1] }
+[[fluid]]
+name = "dust"
+type = "particles"
+motion = "tracer"
+domain = { resolution = 16, min = [0, 0, 0], max = [1, 1, 1] }
+flow = { fluid = "air" }
+[[fluid.source]]
+position = [0.2, 0.5, 0.5]
+rate = 1000
+)";
+    const Scene scene = load_scene_tree("test", parse_toml(text, "t"), "", {}).scene;
+    Job job;
+    const Frame frame = make_source(scene, scene.fluids.at(1))->frame(6, job);
+    const Particles& dust = frame.particles.at("particles");
+    EXPECT_NEAR(static_cast<double>(dust.size()), 250, 1);
+    for (std::size_t i = 0; i < dust.size(); ++i) {
+        EXPECT_NEAR(dust.position[i].x, 0.2 + static_cast<double>(dust.age[i]), 1e-3);
+    }
+    const Scene other =
+        load_scene_tree("test", parse_toml(text, "t"), "", {"fluid.dust.flow.fluid=airs"}).scene;
+    EXPECT_THROW(make_source(other, other.fluids.at(1)), Error);
+}
+
+TEST(World, PlacesParticlesWithTheirFluid) {
+    const Scene scene = scene_of("rotate_degrees = [0, 0, 90]\nscale = 3\ntranslate = [5, 6, 7]\n");
+    auto frame = std::make_shared<Frame>();
+    frame->fields["density"] = constant_field({1});
+    Particles& p = frame->particles["drops"];
+    p.resize(1);
+    p.position[0] = {1, 0, 0};
+    p.velocity[0] = {1, 2, 3};
+    p.radius[0] = 0.5f;
+    Job job;
+    const View view = World(scene, job).view({frame}, 1, job);
+    const Particles& seen = view.frames.at(0)->particles.at("drops");
+    EXPECT_LT(length(seen.position[0] - Vec3d(5, 9, 7)), 1e-12);
+    EXPECT_LT(length(seen.velocity[0] - Vec3f(-6, 3, 9)), 1e-5f);
+    EXPECT_FLOAT_EQ(seen.radius[0], 1.5f);
+}
+
 }  // namespace
 }  // namespace gischt

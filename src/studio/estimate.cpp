@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "fluid/particles/particle_source.h"
 #include "fluid/procedural/procedural.h"
 #include "scene/world.h"
 #include "studio/cache.h"
@@ -15,6 +16,8 @@ namespace {
 // `scripts/bench light`.
 constexpr double bytes_per_cell = 150, seconds_per_cell = 3.0e-7, disk_bytes_per_cell = 2.0;
 constexpr double seconds_per_cloud_cell = 1.5e-7, seconds_per_sample = 2.0e-6;
+// In eddies of two octaves, and to a density and a file: `scripts/bench particle`.
+constexpr double seconds_per_particle_step = 3e-7, seconds_per_particle = 1.5e-6;
 constexpr double seconds_per_octave = 1.0e-7;  // of a cell of procedural noise
 
 struct Estimator {
@@ -49,6 +52,21 @@ struct Estimator {
         const ProceduralParams& p = f.source;
         const int fields = 1 + p.temperature.has_value() + p.flame.has_value() + 3 * is_moving(p);
         return box_filled("procedural", p, fields, seconds_per_octave * p.noise.octaves);
+    }
+
+    FluidEstimate operator()(const FluidOf<ParticleParams>& f) const {
+        const SplatLattice lattice = splat_lattice(f.source.domain);
+        FluidEstimate e;
+        e.source = "particles";
+        e.cell_size = lattice.h;
+        e.cells = lattice.cells;
+        double count = 0;
+        for (const SpoutParams& s : f.source.sources) count += most_alive(s);
+        e.memory = 400 * count + 4 * static_cast<double>(volume(e.cells));
+        e.disk_per_frame = 60 * count;
+        e.seconds_per_frame =
+            (seconds_per_particle_step * f.source.substeps + seconds_per_particle) * count;
+        return e;
     }
 
   private:
