@@ -6,7 +6,10 @@
 
 #include <cmath>
 
+#include "base/random.h"
+#include "render/billboards/billboard_drawer.h"
 #include "render/march/gpu_march_drawer.h"
+#include "render/points/point_drawer.h"
 #include "render/realtime/test_scenes.h"
 #include "render/slices/slice_drawer.h"
 
@@ -72,6 +75,50 @@ void gpu_march(benchmark::State& state, double g) {
 }
 BENCHMARK_CAPTURE(gpu_march, even, 0)->Unit(benchmark::kMillisecond)->UseManualTime();
 BENCHMARK_CAPTURE(gpu_march, forward, 0.5)->Unit(benchmark::kMillisecond)->UseManualTime();
+
+// 100,000 particles in a ball whose squares are 8 x 8 pixels on average.
+View particle_view() {
+    Frame frame;
+    Particles& p = frame.particles["dust"];
+    p.resize(100'000);
+    p.opacity.assign(p.size(), 0.3f);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const auto u = [&](std::uint32_t d) {
+            return static_cast<double>(random_uniform(d, static_cast<std::uint32_t>(i)));
+        };
+        const double z = 2 * u(1) - 1, turn = 2 * pi * u(2), r = 0.5 * std::cbrt(u(3));
+        p.position[i] = r * Vec3d(std::sqrt(1 - z * z) * std::cos(turn),
+                                  std::sqrt(1 - z * z) * std::sin(turn), z);
+        p.radius[i] = 0.024f;  // 4 pixels at 2 m
+        p.life[i] = 1;
+        p.id[i] = i;
+    }
+    View view = test_view({});
+    view.frames = {std::make_shared<const Frame>(std::move(frame))};
+    return view;
+}
+
+void billboards(benchmark::State& state, ParticleOrder order, BlendPreset blend) {
+    BillboardsParams params;
+    params.draw.order = order;
+    params.draw.blend.preset = blend;
+    BillboardDrawer drawer(offscreen_device(), params);
+    draw_pictures(state, drawer, particle_view());
+}
+BENCHMARK_CAPTURE(billboards, sorted_smoke, ParticleOrder::Sorted, BlendPreset::Smoke)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(billboards, unsorted_additive, ParticleOrder::Unsorted, BlendPreset::Additive)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+
+void points(benchmark::State& state) {
+    PointsParams params;
+    params.size = 2;
+    PointDrawer drawer(offscreen_device(), params);
+    draw_pictures(state, drawer, particle_view());
+}
+BENCHMARK(points)->Unit(benchmark::kMillisecond)->UseManualTime();
 
 // The light of one sun or point in 128^3 cells, on the processor.
 void light_grid(benchmark::State& state, bool is_sun) {

@@ -41,6 +41,9 @@ class GlDevice {
 
     // What follows draws into this framebuffer, of that many pixels.
     virtual void set_target(GlId framebuffer, const Vec2i& size) = 0;
+    // Draws as if the target reached that many pixels farther on each side, where nothing is kept:
+    // what is clipped by its middle is not lost at the edges. 0 again after set_target().
+    virtual void set_margin(int pixels) = 0;
     virtual void clear_color(int attachment, const std::array<float, 4>& value) = 0;
     virtual void clear_depth(float depth) = 0;
 

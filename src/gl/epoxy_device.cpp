@@ -111,6 +111,9 @@ class EpoxyDevice : public GlDevice {
                               limits_.renderer.find("softpipe") != std::string::npos;
         glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits_.volume_size);
         glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.flat_size);
+        float points[2] = {1, 1};
+        glGetFloatv(GL_POINT_SIZE_RANGE, points);
+        limits_.point_size = points[1];
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_bytes);
         glCreateVertexArrays(1, &no_attributes_);
         glBindVertexArray(no_attributes_);
@@ -245,8 +248,12 @@ class EpoxyDevice : public GlDevice {
 
     void set_target(GlId framebuffer, const Vec2i& size) override {
         target_ = framebuffer;
+        target_size_ = size;
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
         glViewport(0, 0, size.x, size.y);
+    }
+    void set_margin(int pixels) override {
+        glViewport(-pixels, -pixels, target_size_.x + 2 * pixels, target_size_.y + 2 * pixels);
     }
     void clear_color(int attachment, const std::array<float, 4>& value) override {
         glClearNamedFramebufferfv(target_, GL_COLOR, attachment, value.data());
@@ -277,7 +284,11 @@ class EpoxyDevice : public GlDevice {
     void barrier() override { glMemoryBarrier(GL_ALL_BARRIER_BITS); }
     void finish() override { glFinish(); }
 
-    void begin_timer(GlId timer) override { glQueryCounter(timer, GL_TIMESTAMP); }
+    void begin_timer(GlId timer) override {
+        glQueryCounter(timer, GL_TIMESTAMP);
+        // llvmpipe stamps a batch of work when it is done with all of it.
+        if (limits_.is_software) glFinish();
+    }
     void end_timer(GlId timer) override { glQueryCounter(timer_ends_.at(timer), GL_TIMESTAMP); }
     double timer_seconds(GlId timer) override {
         GLuint64 begin = 0, end = 0;
@@ -291,6 +302,7 @@ class EpoxyDevice : public GlDevice {
 
     GlLimits limits_;
     GlId no_attributes_ = 0, target_ = 0;
+    Vec2i target_size_;
     std::map<std::pair<GlId, std::string>, GLint> locations_;
     std::map<std::string, GlId> programs_;  // by their whole text
     std::map<GlId, GlId> timer_ends_;       // the second stamp of each
@@ -381,7 +393,14 @@ void EpoxyDevice::draw(const GlDraw& draw) {
     }
     (draw.depth == GlDepth::Off ? glDisable : glEnable)(GL_DEPTH_TEST);
     glDepthMask(draw.depth == GlDepth::TestAndWrite ? GL_TRUE : GL_FALSE);
-    glDrawArraysInstanced(word_of(draw.primitive), draw.first, draw.count, draw.instances);
+    if (!draw.indices) {
+        glDrawArraysInstanced(word_of(draw.primitive), draw.first, draw.count, draw.instances);
+        return;
+    }
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, draw.indices);
+    const auto* first = reinterpret_cast<const void*>(4 * static_cast<std::uintptr_t>(draw.first));
+    glDrawElementsInstanced(word_of(draw.primitive), draw.count, GL_UNSIGNED_INT, first,
+                            draw.instances);
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ class NullDevice : public GlDevice {
     GlId create_timer() override { return make(); }
     void destroy(GlKind, GlId) override { --objects; }
     void set_target(GlId framebuffer, const Vec2i& size) override;
+    void set_margin(int) override {}
     void clear_color(int attachment, const std::array<float, 4>& value) override;
     void clear_depth(float depth) override;
     void use(GlId program) override;
@@ -53,7 +54,7 @@ class NullDevice : public GlDevice {
         return ++last_;
     }
 
-    GlLimits limits_{"nothing", "0", 2048, 16384, 1 << 30, true};
+    GlLimits limits_{"nothing", "0", 2048, 16384, 255, 1 << 30, true};
     GlId last_ = 0;
 };
 

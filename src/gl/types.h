@@ -69,6 +69,9 @@ struct GlDraw {
     GlPrimitive primitive = GlPrimitive::Triangles;
     int first = 0, count = 3, instances = 1;
     GlDepth depth = GlDepth::Off;
+    // A buffer of unsigned integers, gl_VertexID of each vertex; 0: they count up. Equal ones near
+    // each other are computed once.
+    GlId indices = 0;
     std::optional<GlBlend> blend;  // unset: replaces
 };
 
@@ -87,6 +90,7 @@ struct GlLimits {
     std::string renderer, version;   // as the driver names itself
     int volume_size = 0;             // texels along an edge of a volume
     int flat_size = 0;               // of a flat texture
+    float point_size = 1;            // pixels across a point
     std::int64_t storage_bytes = 0;  // of one buffer
     bool is_software = false;        // no graphics hardware: drawn by the processor
 };
