@@ -69,17 +69,18 @@ void main() {
 }
 )";
 
-// A square that faces the camera is one in the picture: a point that holds it, in which the
-// fragment turns. Points whose middle lies outside of the view are clipped, so the view is widened
-// by a margin.
+// A square that faces the camera is one in the picture: a point that holds it (as it is turned, or
+// only the disc in it where the picture is one), in which the fragment turns. Points whose middle
+// lies outside of the view are clipped, so the view is widened by a margin.
 const char* const point_vertex = R"(
 uniform vec2 margin_scale;
+uniform int is_round;
 flat out vec4 turn_z;  // cosine, sine, edge of the point in edges of the square; depth
 void main() {
     uint i = order[gl_VertexID];
     vec3 p = place[i].xyz;
     float z = dot(p - eye, forward), turn = spin * 6.2831853 * chance[i].x;
-    float c = cos(turn), s = sin(turn), wide = abs(c) + abs(s);
+    float c = cos(turn), s = sin(turn), wide = is_round != 0 ? 1 : abs(c) + abs(s);
     float pixels = size * place[i].w * picture_size.y / (half_size.y * (is_perspective != 0 ? z : 1.0));
     tell(i);
     turn_z = vec4(c, s, wide, z);
@@ -153,6 +154,7 @@ BillboardDrawer::BillboardDrawer(GlDevice& device, const BillboardsParams& param
         device, {GlShape::Array, sheet.is_white ? GlFormat::R32F : GlFormat::Rgba32F, size},
         sheet.texels.data());
     is_sequence_ = sheet.is_sequence;
+    is_round_ = sheet.is_round;
     squares_ = billboard_program(device, false, sheet);
     points_ = billboard_program(device, true, sheet);
 }
@@ -176,7 +178,7 @@ void BillboardDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
     opaque.draw(camera, order.as_depth);
     if (stage_.cloud().count() == 0) return;
     // Where all squares face the camera and none is too large, points are several times as fast.
-    const double widest = params_.spin ? std::sqrt(2.0) : 1;
+    const double widest = params_.spin && !is_round_ ? std::sqrt(2.0) : 1;
     const double pixels = 2 * widest * params_.size * stage_.cloud().largest_in_pixels(camera);
     const bool is_point = params_.facing == BillboardFacing::Camera &&
                           pixels <= static_cast<double>(device_.limits().point_size);
@@ -201,6 +203,7 @@ void BillboardDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
             return static_cast<float>(edge) / static_cast<float>(edge + 2 * margin);
         };
         program.set("margin_scale", Vec2f{scale(target.size().x), scale(target.size().y)});
+        program.set("is_round", is_round_ ? 1 : 0);
         draw.primitive = GlPrimitive::Points;
         draw.count = stage_.cloud().count();
         device_.set_margin(margin);

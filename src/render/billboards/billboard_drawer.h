@@ -23,7 +23,7 @@ class BillboardDrawer : public SceneDrawer {
     ParticleStage stage_;
     GlTexture sprites_;
     GlBuffer corners_;
-    bool is_sequence_ = true;
+    bool is_sequence_ = true, is_round_ = false;
 };
 
 // GLSL: billboard_edges(center, velocity, turn, right, up), the two unit vectors along the edges of

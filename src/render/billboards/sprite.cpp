@@ -39,7 +39,10 @@ double alpha_of(SpriteKind kind, double x, double y, int picture) {
 }
 
 SpriteSheet generated(SpriteKind kind) {
-    SpriteSheet sheet{edge, edge, kind == SpriteKind::Puff ? 4 : 1, false, true, {}};
+    SpriteSheet sheet;
+    sheet.width = sheet.height = edge;
+    sheet.count = kind == SpriteKind::Puff ? 4 : 1;
+    sheet.is_round = sheet.is_white = true;
     for (int i = 0; i < sheet.count; ++i) {
         for (int y = 0; y < edge; ++y) {
             for (int x = 0; x < edge; ++x) {
@@ -59,12 +62,11 @@ SpriteSheet cut_out(const Image& image, int columns, int rows, FlipbookPlay play
                                 image.width, image.height, columns, rows),
                     "set render.billboards.sheet to its columns and rows");
     }
-    SpriteSheet sheet{image.width / columns,
-                      image.height / rows,
-                      columns * rows,
-                      play == FlipbookPlay::Life,
-                      false,
-                      {}};
+    SpriteSheet sheet;
+    sheet.width = image.width / columns;
+    sheet.height = image.height / rows;
+    sheet.count = columns * rows;
+    sheet.is_sequence = play == FlipbookPlay::Life;
     const auto color = image.color();
     const Channel* alpha = image.find("A");
     for (int i = 0; i < sheet.count; ++i) {

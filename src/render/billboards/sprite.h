@@ -11,7 +11,8 @@ namespace gischt {
 // multiplied by alpha, and alpha.
 struct SpriteSheet {
     int width = 0, height = 0, count = 0;
-    bool is_sequence = true;    // shown one after the other, and mixed between two
+    bool is_sequence = false;   // shown one after the other, and mixed between two
+    bool is_round = false;      // nothing outside of the disc that touches the edges
     bool is_white = false;      // only alpha is kept: a fourth of the work
     std::vector<float> texels;  // RGBA or alpha, rows from bottom to top, picture after picture
 };
