@@ -122,9 +122,12 @@ LitGrid::LitGrid(const View& view, const GridParams& params, std::string_view me
 }
 
 bool LitGrid::holds_for(const View& view) const {
-    // Surfaces have no identity; where there are some, the light is made anew.
-    return view_media_ == view.media && view_lights_ == view.lights && surfaces_.is_empty() &&
-           view.surfaces.is_empty();
+    // Copies of a set of surfaces share what they hold, the list of lights among it.
+    const bool is_same_surfaces =
+        surfaces_.is_empty()
+            ? view.surfaces.is_empty()
+            : !view.surfaces.is_empty() && &surfaces_.lights() == &view.surfaces.lights();
+    return view_media_ == view.media && view_lights_ == view.lights && is_same_surfaces;
 }
 
 // The grid of one medium that stands straight is that of its voxels, or every n-th of them; of

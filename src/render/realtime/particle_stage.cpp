@@ -43,7 +43,10 @@ ParticleStage::ParticleStage(GlDevice& device, const ParticleDrawParams& params)
     : device_(device), params_(params), cloud_(device), sort_(device) {}
 
 void ParticleStage::upload(const View& view, std::string_view method, Job& job) {
-    grid_.emplace(view, params_.grid, method, job);
+    const bool holds = grid_ && grid_->holds_for(view);
+    if (holds && frames_ == view.frames) return;
+    if (!holds) grid_.emplace(view, params_.grid, method, job);
+    frames_ = view.frames;
     cloud_.upload(view, *grid_, params_.shading, method);
     std::vector<std::uint32_t> identity(static_cast<std::size_t>(cloud_.count()));
     std::iota(identity.begin(), identity.end(), 0u);

@@ -55,6 +55,7 @@ class ParticleStage {
     DepthSort sort_;
     GlBuffer identity_;
     std::optional<LitGrid> grid_;
+    std::vector<std::shared_ptr<const Frame>> frames_;  // whose particles these are
 };
 
 // GLSL of vertex stages: the buffers, and particle_at(i), the index of the i-th in order.

@@ -219,6 +219,16 @@ TEST(Realtime, ShadesAnewOnlyWhatTheCameraChanges) {
         EXPECT_TRUE(grid.holds_for(other));
         other.lights.push_back(test_sun({0, 0, 1}));
         EXPECT_FALSE(grid.holds_for(other));
+        View solid = view;
+        solid.surfaces = SurfaceSet({ball({0, 0, 0}, 0.1)}, 0);
+        EXPECT_FALSE(grid.holds_for(solid));
+        const LitGrid shadowed(solid, {}, "test", job);
+        View copy = solid;
+        copy.camera = test_camera({0, 3, 0});
+        EXPECT_TRUE(shadowed.holds_for(copy));
+        copy.surfaces = SurfaceSet({ball({0, 0, 0}, 0.1)}, 0);
+        EXPECT_FALSE(shadowed.holds_for(copy));
+        EXPECT_FALSE(shadowed.holds_for(view));
 
         LitVolume volume(device);
         volume.upload(grid);
