@@ -2,6 +2,7 @@
 #include "optics/emission_sampler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -194,17 +195,42 @@ int EmissionSampler::leaf_of(int medium, const Vec3d& point) const {
                      : leaf_at(body, brick, Vec3f(q - Vec3d(b) * double{BrickVolume::brick_edge}));
 }
 
-double EmissionSampler::probability(const Vec3d& receiver, int leaf) const {
-    const Vec3f from(receiver - origin_);
-    const int target = leaves_[static_cast<std::size_t>(leaf)].node;
-    double probability = 1;
-    for (int node = 0; node != target;) {
-        const auto left = static_cast<double>(share_of_left(node, from));
-        const int right = nodes_[static_cast<std::size_t>(node)].right;
-        probability *= target < right ? left : 1 - left;
-        node = target < right ? node + 1 : right;
+// The probabilities of leaves for one receiver; neighbours share most of the way down.
+class EmissionSampler::Descent {
+  public:
+    Descent(const EmissionSampler& sampler, const Vec3d& receiver)
+        : sampler_(sampler), from_(receiver - sampler.origin_) {
+        steps_[0] = {0, static_cast<int>(sampler.nodes_.size()), 1};
     }
-    return probability;
+
+    double to(int leaf) {
+        const int target = sampler_.leaves_[static_cast<std::size_t>(leaf)].node;
+        while (target < steps_[last_].node || target >= steps_[last_].end) --last_;
+        while (steps_[last_].node != target) {
+            const Step& at = steps_[last_];
+            const int left = at.node + 1,
+                      right = sampler_.nodes_[static_cast<std::size_t>(at.node)].right;
+            const auto share = static_cast<double>(sampler_.share_of_left(at.node, from_));
+            steps_[last_ + 1] = target < right ? Step{left, right, at.probability * share}
+                                               : Step{right, at.end, at.probability * (1 - share)};
+            ++last_;
+        }
+        return steps_[last_].probability;
+    }
+
+  private:
+    struct Step {
+        int node, end;  // the subtree is [node, end)
+        double probability;
+    };
+    const EmissionSampler& sampler_;
+    Vec3f from_;
+    std::array<Step, 64> steps_;  // the tree is halved by number: 32 levels at most
+    std::size_t last_ = 0;
+};
+
+double EmissionSampler::probability(const Vec3d& receiver, int leaf) const {
+    return Descent(*this, receiver).to(leaf);
 }
 
 float EmissionSampler::pdf(const Vec3d& receiver, int medium, const Vec3d& point) const {
@@ -215,7 +241,9 @@ float EmissionSampler::pdf(const Vec3d& receiver, int medium, const Vec3d& point
 }
 
 float EmissionSampler::direction_pdf(const Ray& ray) const {
+    if (is_empty()) return 0;
     double sum = 0;
+    Descent descent(*this, ray.origin);
     for (const Body& body : bodies_) {
         if (body.leaves.empty()) continue;
         SegmentWalk walk = body.medium->segments(ray, BrickGrain::Blocks);
@@ -224,7 +252,7 @@ float EmissionSampler::direction_pdf(const Ray& ray) const {
             const int leaf = leaf_at(body, s.brick, s.entry + middle * s.step);
             if (leaf < 0) continue;
             const double shell = (s.t1 * s.t1 * s.t1 - s.t0 * s.t0 * s.t0) / 3;
-            sum += probability(ray.origin, leaf) * body.density * shell;
+            sum += descent.to(leaf) * body.density * shell;
         }
     }
     return static_cast<float>(sum);

@@ -54,6 +54,7 @@ class EmissionSampler {
     double probability(const Vec3d& receiver, int leaf) const;
 
   private:
+    class Descent;
     // In depth-first order: the left child follows its parent.
     struct Node {
         Vec3f center;       // metres from origin_

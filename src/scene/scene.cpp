@@ -100,7 +100,26 @@ const Table<RenderSection>& render_table() {
     return table;
 }
 
+// Particles may go with any fluid that is no particles.
+void check_flows(const Scene& s, const Fail& fail) {
+    std::vector<std::string> carriers;
+    for (const FluidSection& fluid : s.fluids) {
+        if (!std::holds_alternative<FluidOf<ParticleParams>>(fluid))
+            carriers.push_back(common_of(fluid).name);
+    }
+    for (const FluidSection& fluid : s.fluids) {
+        const auto* particles = std::get_if<FluidOf<ParticleParams>>(&fluid);
+        if (!particles || particles->source.flow.fluid.empty()) continue;
+        const std::string& name = particles->source.flow.fluid;
+        if (std::ranges::find(carriers, name) == carriers.end()) {
+            fail("fluid", "has a 'flow' with no fluid '" + name + "' that could carry particles",
+                 hint_for(name, carriers));
+        }
+    }
+}
+
 void check_scene(const Scene& s, const Fail& fail) {
+    check_flows(s, fail);
     if (s.frames.x > s.frames.y) fail("frames", "must be [first, last] with first at most last");
     if (s.frames.x < 0) fail("frames", "must not start below 0");
     const auto methods = render_methods();

@@ -2,6 +2,7 @@
 #include "scene/world.h"
 
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -114,6 +115,46 @@ std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& f
     return std::visit(SolidOf{up}, s);
 }
 
+// The vectors of a field under a linear map.
+static void map_vectors(Field& field, const Transform& map) {
+    auto &x = field.component[0], &y = field.component[1], &z = field.component[2];
+    for (std::size_t i = 0; i < x.values().size(); ++i) {
+        const Vec3d v = map.vector({x.values()[i], y.values()[i], z.values()[i]});
+        x.values()[i] = static_cast<float>(v.x);
+        y.values()[i] = static_cast<float>(v.y);
+        z.values()[i] = static_cast<float>(v.z);
+    }
+    const auto& b = field.background;
+    const Vec3f background(map.vector({b[0], b[1], b[2]}));
+    field.background = {background.x, background.y, background.z};
+}
+
+// A fluid's frame where the scene puts it: lengths grow with it, and what points somewhere turns.
+// Other vectors (colours, say) stay as they are.
+static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& frame,
+                                           const Transform& placement) {
+    if (placement == Transform{}) return frame;
+    auto out = std::make_shared<Frame>(*frame);
+    const double scale = std::cbrt(placement.determinant());
+    Transform rotation = placement;
+    for (Vec3d& c : rotation.column) c = c / scale;
+    for (auto& [name, particles] : out->particles) {
+        for (Vec3d& p : particles.position) p = placement.point(p);
+        for (Vec3f& v : particles.velocity) v = Vec3f(placement.vector(Vec3d(v)));
+        for (float& r : particles.radius) r *= static_cast<float>(scale);
+    }
+    for (auto& [name, field] : out->fields) {
+        field.to_world = placement * field.to_world;
+        if (field.is_vector() && name == "velocity") map_vectors(field, placement);
+        if (field.is_vector() && name == "vorticity") map_vectors(field, rotation);
+        if (field.kind == FieldClass::LevelSet && !field.is_vector() && scale != 1) {
+            for (float& d : field.component[0].values()) d *= static_cast<float>(scale);
+            field.background[0] *= static_cast<float>(scale);
+        }
+    }
+    return out;
+}
+
 struct SourceOf {
     const Scene& scene;
 
@@ -143,13 +184,17 @@ struct SourceOf {
         return std::make_unique<ParticleSource>(f.source, world_of(f.common.name),
                                                 std::move(inputs));
     }
-    // Frames of the fluid that carries particles. A fluid of the scene is computed again for them.
+    // Frames of the fluid that carries particles, where the scene puts it. A fluid of the scene is
+    // computed again for them. Files that begin with frame 1 move as that from frame 0 on.
     std::function<std::shared_ptr<const Frame>(int, Job&)> flow_for(const FlowParams& flow) const {
         if (!flow.file.empty()) {
             FileParams files;
             files.file = flow.file;
             return [files](int number, Job& job) {
-                return std::make_shared<const Frame>(read_file_frame(files, number, job));
+                const bool begins_later =
+                    number == 0 && !std::filesystem::exists(file_of_frame(files, 0));
+                return std::make_shared<const Frame>(
+                    read_file_frame(files, begins_later ? 1 : number, job));
             };
         }
         if (flow.fluid.empty()) return {};
@@ -158,9 +203,9 @@ struct SourceOf {
             if (std::holds_alternative<FluidOf<ParticleParams>>(other)) continue;
             names.push_back(common_of(other).name);
             if (names.back() != flow.fluid) continue;
-            return [source = std::shared_ptr<FluidSource>(std::visit(*this, other))](int number,
-                                                                                     Job& job) {
-                return std::make_shared<const Frame>(source->frame(number, job));
+            return [source = std::shared_ptr<FluidSource>(std::visit(*this, other)),
+                    placement = common_of(other).placement()](int number, Job& job) {
+                return placed(std::make_shared<const Frame>(source->frame(number, job)), placement);
             };
         }
         throw Error(ErrorKind::Usage, "flow", "no fluid '" + flow.fluid + "' that could carry",
@@ -272,46 +317,6 @@ CameraParams World::camera(const View& view) const {
     CameraParams params = fit_camera(box, framing);
     close_in(params, view, framing);
     return params;
-}
-
-// The vectors of a field under a linear map.
-static void map_vectors(Field& field, const Transform& map) {
-    auto &x = field.component[0], &y = field.component[1], &z = field.component[2];
-    for (std::size_t i = 0; i < x.values().size(); ++i) {
-        const Vec3d v = map.vector({x.values()[i], y.values()[i], z.values()[i]});
-        x.values()[i] = static_cast<float>(v.x);
-        y.values()[i] = static_cast<float>(v.y);
-        z.values()[i] = static_cast<float>(v.z);
-    }
-    const auto& b = field.background;
-    const Vec3f background(map.vector({b[0], b[1], b[2]}));
-    field.background = {background.x, background.y, background.z};
-}
-
-// A fluid's frame where the scene puts it: lengths grow with it, and what points somewhere turns.
-// Other vectors (colours, say) stay as they are.
-static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& frame,
-                                           const Transform& placement) {
-    if (placement == Transform{}) return frame;
-    auto out = std::make_shared<Frame>(*frame);
-    const double scale = std::cbrt(placement.determinant());
-    Transform rotation = placement;
-    for (Vec3d& c : rotation.column) c = c / scale;
-    for (auto& [name, particles] : out->particles) {
-        for (Vec3d& p : particles.position) p = placement.point(p);
-        for (Vec3f& v : particles.velocity) v = Vec3f(placement.vector(Vec3d(v)));
-        for (float& r : particles.radius) r *= static_cast<float>(scale);
-    }
-    for (auto& [name, field] : out->fields) {
-        field.to_world = placement * field.to_world;
-        if (field.is_vector() && name == "velocity") map_vectors(field, placement);
-        if (field.is_vector() && name == "vorticity") map_vectors(field, rotation);
-        if (field.kind == FieldClass::LevelSet && !field.is_vector() && scale != 1) {
-            for (float& d : field.component[0].values()) d *= static_cast<float>(scale);
-            field.background[0] *= static_cast<float>(scale);
-        }
-    }
-    return out;
 }
 
 // The fluids' media while the film is exposed. One that needs fewer moments than another keeps each

@@ -149,9 +149,22 @@ rate = 1000
     for (std::size_t i = 0; i < dust.size(); ++i) {
         EXPECT_NEAR(dust.position[i].x, 0.2 + static_cast<double>(dust.age[i]), 1e-3);
     }
-    const Scene other =
-        load_scene_tree("test", parse_toml(text, "t"), "", {"fluid.dust.flow.fluid=airs"}).scene;
-    EXPECT_THROW(make_source(other, other.fluids.at(1)), Error);
+    // Turned, the air blows along y.
+    const Scene turned =
+        load_scene_tree("test", parse_toml(text, "t"), "",
+                        {"fluid.air.rotate_degrees=[0,0,90]", "fluid.air.translate=[1,0,0]",
+                         "fluid.dust.source.0.position=[0.5,0.2,0.5]"})
+            .scene;
+    const Frame along_y = make_source(turned, turned.fluids.at(1))->frame(6, job);
+    const Particles& up = along_y.particles.at("particles");
+    EXPECT_FALSE(up.is_empty());
+    for (std::size_t i = 0; i < up.size(); ++i) {
+        EXPECT_NEAR(up.position[i].y, 0.2 + static_cast<double>(up.age[i]), 1e-3);
+    }
+    for (const char* name : {"airs", "dust"}) {
+        const std::string set = std::string("fluid.dust.flow.fluid=") + name;
+        EXPECT_THROW(load_scene_tree("test", parse_toml(text, "t"), "", {set}), Error) << name;
+    }
 }
 
 TEST(World, PlacesParticlesWithTheirFluid) {

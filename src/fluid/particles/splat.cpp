@@ -148,6 +148,7 @@ void splat_particles(const Particles& p, const SplatLattice& lattice, const Spla
                      Frame& frame, Job& job) {
     std::vector<Blob> blobs(p.size());
     parallel_for(static_cast<int>(p.size()), 1024, [&](int i) {
+        if (job.is_cancelled()) return;
         const auto n = static_cast<std::size_t>(i);
         blobs[n] = blob_of(p, n, lattice, options);
     });

@@ -2,7 +2,6 @@
 // Light that reaches a scattering point straight from the lights, and what a path meets by itself.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "image/color.h"
 #include "render/path/path_tracer.h"
@@ -17,6 +16,12 @@ Vec3f Scatterer::value(const Vec3d& direction) const {
 float Scatterer::pdf(const Vec3d& direction) const {
     if (medium) return gischt::value(medium->phase(), dot(forward, Vec3f(direction)));
     return bsdf->pdf(-Vec3d(forward), direction);
+}
+
+std::optional<BsdfSample> Scatterer::sample(Vec2f u, RandomStream& random) const {
+    if (!medium) return bsdf->sample(-Vec3d(forward), u, random.next());
+    const PhaseSample s = gischt::sample(medium->phase(), forward, u);
+    return BsdfSample{Vec3d(s.direction), Vec3f(1), s.pdf, false, false};
 }
 
 Ray Scatterer::leave(const Vec3d& direction, double distance) const {
@@ -64,31 +69,6 @@ void PathTracer::direct_light(const Scatterer& at, const Leg& leg, RandomStream&
     }
     if (!scene_.broad.empty()) from_broad(at, leg, random);
     if (!scene_.glow.is_empty()) from_glow(at, leg, random);
-}
-
-// Media that glow: the direction of a point of theirs, and all that glows along it.
-void PathTracer::from_glow(const Scatterer& at, const Leg& leg, RandomStream& random) {
-    const float choice = random.next();
-    const Vec2f place = random.two();
-    const EmissionSample s =
-        scene_.glow.sample(at.point, choice, {place.x, place.y, random.next()});
-    if (!(s.pdf > 0)) return;
-    const Vec3d way = s.point - at.point;
-    const double distance = length(way);
-    if (!(distance > 0)) return;
-    const Vec3d direction = way / distance;
-    const Vec3f value = at.value(direction);
-    if (max_component(value) <= 0) return;
-    Ray ray = at.leave(direction, std::numeric_limits<double>::infinity());
-    if (const auto hit = intersect(ray)) ray.t_max = hit->t;
-    if (distance > ray.t_max) return;  // behind a surface, where direction_pdf() does not count it
-    const float pdf = scene_.glow.direction_pdf(ray);
-    if (!(pdf > 0)) return;
-    Vec3f glow;
-    PathWeight weight = leg.weight;
-    Collision end;
-    tracker_.fly(ray, hero_, weight, random, end, &glow);
-    deposit(value * glow * (1 / (pdf + at.pdf(direction))), leg.events);
 }
 
 void PathTracer::from_sun(const SunSource& sun, const Scatterer& at, const Leg& leg,

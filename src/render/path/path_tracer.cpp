@@ -140,8 +140,8 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         next.events = 1;
         count_run(next, tracker_.media[p.medium]);
         random = stream_of(numbers, 2);
-        go_on({leg.ray.at(p.t), forward, tracker_.media[p.medium], nullptr, nullptr}, next, random);
-        follow(next, random);
+        const Scatterer at{leg.ray.at(p.t), forward, tracker_.media[p.medium], nullptr, nullptr};
+        if (go_on(at, next, random)) follow(next, random);
         inside_ = inside;
         take_media();
     }

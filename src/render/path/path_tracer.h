@@ -38,6 +38,8 @@ struct Scatterer {
     Vec3f value(const Vec3d& direction) const;
     // The density with which a new direction is drawn, 1/sr.
     float pdf(const Vec3d& direction) const;
+    // Nothing where the sample would carry no light.
+    std::optional<BsdfSample> sample(Vec2f u, RandomStream& random) const;
     Ray leave(const Vec3d& direction, double distance) const;
 };
 
@@ -65,7 +67,8 @@ class PathTracer {
         int events = 0;   // scatterings so far
         int mirrors = 0;  // delta scatterings of surfaces so far
         Vec3d from;       // the last scattering that was none of these
-        float pdf = 0;    // of the direction from there, 1/sr; 0: nothing was drawn
+        float pdf = 0;    // of the direction from there by what scatters, 1/sr; 0: it was a mirror
+        float glow = 0;   // of the direction in EmissionSampler, were there no surfaces, 1/sr
         // The scatterings in succession by one medium up to here (see sun_bridge.cpp).
         const Medium* run_in = nullptr;
         int run = 0;
@@ -94,7 +97,8 @@ class PathTracer {
     End look(Leg& leg, RandomStream& random, std::optional<SurfaceHit>& hit);
     bool scatter_in_medium(Leg& leg, const Collision& collision, RandomStream& random);
     bool scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStream& random);
-    void go_on(const Scatterer& at, Leg& leg, RandomStream& random);
+    bool go_on(const Scatterer& at, Leg& leg, RandomStream& random);
+    std::optional<BsdfSample> turn(const Scatterer& at, Leg& leg, RandomStream& random);
     static void count_run(Leg& leg, const Medium* medium);
     bool survives(Leg& leg, RandomStream& random) const;
 
@@ -105,11 +109,14 @@ class PathTracer {
     Vec3f sunlight(const SunSource& sun, const Scatterer& at, const LightSample& s,
                    RandomStream& random);
     void from_local(const Scatterer& at, const Leg& leg, RandomStream& random);
-    void from_glow(const Scatterer& at, const Leg& leg, RandomStream& random);
-    float glow_share(const Leg& leg) const;
     void from_broad(const Scatterer& at, const Leg& leg, RandomStream& random);
     void from_infinity(const Leg& leg, const Vec3f& transmittance);
     void from_surface(const Leg& leg, const SurfaceHit& hit, const Vec3f& transmittance);
+
+    Vec3d way_to_glow(const Scatterer& at, RandomStream& random) const;
+    float lean_to_glow(const Scatterer& at) const;
+    void from_glow(const Scatterer& at, const Leg& leg, RandomStream& random);
+    float glow_share(const Leg& leg, bool is_cut) const;
 
     bool has_bridges(const Medium& medium) const;
     void set_out_bridges(const Scatterer& at, Leg& leg, RandomStream random);
@@ -150,7 +157,7 @@ class PathTracer {
     std::optional<InteriorStack> inside_;  // only where surfaces have an inside
     const Medium* interior_ = nullptr;
     Tracker tracker_;
-    RayProfile profile_;
+    RayProfile profile_, glow_profile_;
     AngleSampler angles_;
     std::vector<ProfilePoint> points_;
     TracedRay result_;

@@ -39,7 +39,9 @@ PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& colli
             Vec3f glow;
             const bool collides =
                 tracker_.fly(leg.ray, hero_, leg.weight, random, collision, &glow);
-            if (max_component(glow) > 0) deposit_glow(glow_share(leg) * glow, leg.events);
+            if (max_component(glow) > 0) {
+                deposit_glow(glow_share(leg, hit.has_value()) * glow, leg.events);
+            }
             if (collides) return End::Collision;
         }
         if (!hit) return End::Infinity;
@@ -51,13 +53,7 @@ PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& colli
     return End::Infinity;
 }
 
-// The share of the balance heuristic of what glows on a leg, against from_glow().
-float PathTracer::glow_share(const Leg& leg) const {
-    if (leg.pdf == 0 || scene_.glow.is_empty()) return 1;
-    return leg.pdf / (leg.pdf + scene_.glow.direction_pdf(leg.ray));
-}
-
-// The same, the media dimming the light by their transmittance.
+// The same without collisions, the media dimming the light by their transmittance.
 PathTracer::End PathTracer::look(Leg& leg, RandomStream& random, std::optional<SurfaceHit>& hit) {
     for (int i = 0; i < most_boundaries; ++i) {
         hit = intersect(leg.ray, kind_of(leg));
@@ -92,17 +88,14 @@ bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomS
     count_run(leg, medium);
     if (!survives(leg, random)) return false;
     direct_light(at, leg, random);
-    go_on(at, leg, random);
-    return true;
+    return go_on(at, leg, random);
 }
 
-// Leaves a point of a medium in a new direction.
-void PathTracer::go_on(const Scatterer& at, Leg& leg, RandomStream& random) {
+// Leaves a point of a medium in a new direction. False where the path ends.
+bool PathTracer::go_on(const Scatterer& at, Leg& leg, RandomStream& random) {
     if (has_bridges(*at.medium)) set_out_bridges(at, leg, random.branch(1));
-    const PhaseSample next = sample(at.medium->phase(), at.forward, random.leading_two());
-    leg.ray = {at.point, Vec3d(next.direction)};
     leg.from = at.point;
-    leg.pdf = next.pdf;
+    return turn(at, leg, random).has_value();
 }
 
 void PathTracer::count_run(Leg& leg, const Medium* medium) {
@@ -115,24 +108,20 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
     const bool is_first = leg.events == 0 && leg.mirrors == 0;
     if (is_first && !shows(leg, hit, random)) return false;
     const Bsdf bsdf = scene_.view.surfaces.bsdf(hit, inside_ ? inside_->at(hit).relative_ior : 0);
-    const Vec3d out = -leg.ray.direction;
+    const Scatterer at{hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf};
     if (is_first) {
         const Vec3f w = leg.weight.value();
-        note_first((w.x + w.y + w.z) / 3,
-                   {hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf},
-                   bsdf.albedo_estimate(out), Vec3f(hit.shading_normal));
+        note_first((w.x + w.y + w.z) / 3, at, bsdf.albedo_estimate(-leg.ray.direction),
+                   Vec3f(hit.shading_normal));
     }
     if (!bsdf.is_delta_only()) {
         if (leg.events >= depth_) return false;
         Leg lit = leg;
         ++lit.events;
-        direct_light({hit.point, Vec3f(leg.ray.direction), nullptr, &hit, &bsdf}, lit, random);
+        direct_light(at, lit, random);
     }
-    const Vec2f u = random.leading_two();
-    const auto next = bsdf.sample(out, u, random.next());
+    const auto next = turn(at, leg, random);
     if (!next) return false;
-    leg.weight.weight = leg.weight.weight * next->weight;
-    leg.pdf = next->pdf;
     leg.run_in = nullptr;
     if (next->is_delta) {
         if (++leg.mirrors > most_mirrors) return false;
@@ -141,7 +130,6 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
         leg.from = hit.point;
     }
     if (next->is_transmission) cross(hit);
-    leg.ray = leaving_ray(hit, next->direction);
     return survives(leg, random);
 }
 
