@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <vector>
 
 #include "base/error.h"
 #include "gl/device.h"
+#include "gl/epoxy_program.h"
 
 namespace gischt {
 namespace {
@@ -56,34 +56,9 @@ GLenum word_of(BlendFactor factor) {
     return words[static_cast<int>(factor)];
 }
 
-GLenum word_of(GlStageKind kind) {
-    constexpr GLenum words[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_COMPUTE_SHADER};
-    return words[static_cast<int>(kind)];
-}
-
 GLenum word_of(GlPrimitive primitive) {
     constexpr GLenum words[] = {GL_POINTS, GL_TRIANGLES, GL_TRIANGLE_STRIP};
     return words[static_cast<int>(primitive)];
-}
-
-// The first number of a driver's message that is a line: "0:12(3): error" of Mesa, "0(12) : error"
-// of NVIDIA, "ERROR: 0:12:" of others.
-std::string line_of(const std::string& log) {
-    for (std::size_t i = 0; i + 2 < log.size(); ++i) {
-        if (log[i] != '0' || (log[i + 1] != ':' && log[i + 1] != '(')) continue;
-        std::size_t end = i + 2;
-        while (end < log.size() && std::isdigit(static_cast<unsigned char>(log[end]))) ++end;
-        if (end > i + 2) return log.substr(i + 2, end - i - 2);
-    }
-    return "?";
-}
-
-std::string trimmed(std::string log) {
-    while (!log.empty() &&
-           (log.back() == '\0' || std::isspace(static_cast<unsigned char>(log.back())))) {
-        log.pop_back();
-    }
-    return log;
 }
 
 void check_memory(const char* what) {
@@ -298,8 +273,6 @@ class EpoxyDevice : public GlDevice {
     }
 
   private:
-    GlId link_program(std::string_view name, std::span<const GlStage> stages);
-
     GlLimits limits_;
     GlId no_attributes_ = 0, target_ = 0;
     Vec2i target_size_;
@@ -308,25 +281,6 @@ class EpoxyDevice : public GlDevice {
     std::map<GlId, GlId> timer_ends_;       // the second stamp of each
 };
 
-GlId compile(std::string_view name, const GlStage& stage) {
-    const GlId shader = glCreateShader(word_of(stage.kind));
-    // Lines count from that of the stage's own text.
-    const char* texts[] = {"#version 450 core\n#line 1\n", stage.source.c_str()};
-    glShaderSource(shader, 2, texts, nullptr);
-    glCompileShader(shader);
-    GLint is_good = 0, length = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &is_good);
-    if (is_good) return shader;
-    glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
-    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    glGetShaderInfoLog(shader, length, nullptr, log.data());
-    glDeleteShader(shader);
-    constexpr const char* kinds[] = {"vertex", "fragment", "compute"};
-    throw Error(ErrorKind::Internal, fmt::format("{}:{}", name, line_of(log)),
-                fmt::format("the {} shader does not compile: {}",
-                            kinds[static_cast<int>(stage.kind)], trimmed(log)));
-}
-
 GlId EpoxyDevice::create_program(std::string_view name, std::span<const GlStage> stages) {
     std::string text;
     for (const GlStage& s : stages)
@@ -334,30 +288,6 @@ GlId EpoxyDevice::create_program(std::string_view name, std::span<const GlStage>
     GlId& kept = programs_[text];
     if (!kept) kept = link_program(name, stages);
     return kept;
-}
-
-GlId EpoxyDevice::link_program(std::string_view name, std::span<const GlStage> stages) {
-    const GlId program = glCreateProgram();
-    try {
-        for (const GlStage& stage : stages) {
-            const GlId shader = compile(name, stage);
-            glAttachShader(program, shader);
-            glDeleteShader(shader);
-        }
-    } catch (const Error&) {
-        glDeleteProgram(program);
-        throw;
-    }
-    glLinkProgram(program);
-    GLint is_good = 0, length = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &is_good);
-    if (is_good) return program;
-    glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
-    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    glGetProgramInfoLog(program, length, nullptr, log.data());
-    glDeleteProgram(program);
-    throw Error(ErrorKind::Internal, std::string(name),
-                "the program does not link: " + trimmed(log));
 }
 
 void EpoxyDevice::set(GlId program, const char* name, const GlValue& value) {
