@@ -6,8 +6,13 @@
 namespace gischt {
 namespace {
 
-constexpr int run_length = 256;  // points per invocation
-constexpr int group = 32;        // invocations
+constexpr int group = 32;  // invocations
+constexpr int passes = 3;  // of eight bits
+
+// Points per invocation. A processor has few of them to keep busy, and each costs it a table.
+int run_length(const GlDevice& device) {
+    return device.limits().is_software ? 1024 : 128;
+}
 
 const char* const keys_source = R"(
 layout(local_size_x = 32) in;
@@ -19,8 +24,9 @@ void main() {
     int first = int(gl_GlobalInvocationID.x) * run;
     for (int i = first; i < min(first + run, count); ++i) {
         float z = dot(place[i].xyz - eye, forward);
-        // Positive floats are ordered as their bits.
-        key[i] = z > 0 ? ~floatBitsToUint(z) : 0xffffffffu;
+        // Positive floats are ordered as their bits; there is no sign, and 16 bits of the mantissa
+        // are left.
+        key[i] = z > 0 ? ~(floatBitsToUint(z) << 1) >> 8 : 0xffffffffu;
         index[i] = uint(i);
     }
 }
@@ -107,14 +113,15 @@ void DepthSort::resize(int count) {
         key_[i] = GlBuffer(device_, 4 * n);
         index_[i] = GlBuffer(device_, 4 * n);
     }
-    const std::size_t runs = (n + run_length - 1) / run_length;
+    const auto run = static_cast<std::size_t>(run_length(device_));
+    const std::size_t runs = (n + run - 1) / run;
     table_ = GlBuffer(device_, 4 * 256 * (runs + 1));
 }
 
 void DepthSort::sort(const GlBuffer& places, int count, const GlCamera& camera) {
     resize(std::max(count, 1));
     if (count == 0) return;
-    const int runs = (count + run_length - 1) / run_length;
+    const int run = run_length(device_), runs = (count + run - 1) / run;
     const Vec3i groups{(runs + group - 1) / group, 1, 1};
     device_.bind_storage(0, places.id());
     device_.bind_storage(1, key_[0].id());
@@ -123,16 +130,16 @@ void DepthSort::sort(const GlBuffer& places, int count, const GlCamera& camera) 
     keys_.use();
     camera.set(keys_);
     keys_.set("count", count);
-    keys_.set("run", run_length);
+    keys_.set("run", run);
     device_.dispatch(groups);
     device_.barrier();
     for (const GlProgram* p : {&count_, &scatter_}) {
         p->set("count", count);
-        p->set("run", run_length);
+        p->set("run", run);
         p->set("runs", runs);
     }
     sum_.set("runs", runs);
-    for (int pass = 0; pass < 4; ++pass) {
+    for (int pass = 0; pass < passes; ++pass) {
         const int from = pass % 2, to = 1 - from;
         device_.bind_storage(1, key_[from].id());
         device_.bind_storage(2, index_[from].id());

@@ -6,10 +6,11 @@
 namespace gischt {
 
 // Sorts points by their depth along the view axis, the farthest first, on the device: a radix sort
-// with four passes over eight bits of the depth as a float (Satish, Harris, Garland 2009,
-// "Designing efficient sorting algorithms for manycore GPUs"). Stable: equal depths keep their
-// order, and what is behind the camera comes last. Each invocation does a run of points, which
-// suits few cores too.
+// over the highest 24 bits of the depth as a float, eight bits in each pass (Satish, Harris,
+// Garland 2009, "Designing efficient sorting algorithms for manycore GPUs"). Depths that differ by
+// less than 1.6e-5 of themselves may count as equal. Stable: equal depths keep their order, and
+// what is behind the camera comes last. Each invocation does a run of points, which suits few cores
+// too.
 class DepthSort {
   public:
     explicit DepthSort(GlDevice& device);
@@ -17,7 +18,7 @@ class DepthSort {
     // `places` holds 4 floats per point, the first three relative to the camera's origin.
     void sort(const GlBuffer& places, int count, const GlCamera& camera);
     // The indices of the points in that order, unsigned integers; of the latest sort.
-    const GlBuffer& order() const { return index_[0]; }
+    const GlBuffer& order() const { return index_[1]; }
 
   private:
     void resize(int count);
