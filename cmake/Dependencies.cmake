@@ -26,3 +26,10 @@ find_library(OPENVDB_LIBRARY openvdb REQUIRED)
 find_path(OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
 target_include_directories(gischt_openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE})
 target_link_libraries(gischt_openvdb INTERFACE ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
+
+# OpenGL through libepoxy, which opens libEGL when it is asked for something of it.
+add_library(gischt_epoxy INTERFACE)
+find_library(EPOXY_LIBRARY epoxy REQUIRED)
+find_path(EPOXY_INCLUDE epoxy/gl.h REQUIRED)
+target_include_directories(gischt_epoxy SYSTEM INTERFACE ${EPOXY_INCLUDE})
+target_link_libraries(gischt_epoxy INTERFACE ${EPOXY_LIBRARY})

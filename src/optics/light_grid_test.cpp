@@ -66,6 +66,27 @@ TEST(LightGrid, MethodsAgreeOnSmoothMedia) {
     }
 }
 
+// In an even medium the depth is the extinction times the way through the box.
+TEST(LightGrid, DepthsReachTheCentersOfCells) {
+    Job job;
+    const ExtinctionGrid grid{{Vec3d(0), {8, 6, 4}}, {16, 6, 4}, std::vector<float>(384, 0.5f)};
+    const LightOrigin sun{true, {-1, 0, 0}}, lamp{false, {4.25, 2.5, 1.5}};
+    for (const auto method :
+         {LightGridMethod::Exact, LightGridMethod::Bresenham, LightGridMethod::Sweep}) {
+        const std::vector<float> far = depths_to_centers(grid, sun, method, job);
+        const std::vector<float> near = depths_to_centers(grid, lamp, method, job);
+        for (int i = 0; i < 16; ++i) {
+            EXPECT_NEAR(far[grid.index({i, 3, 1})], 0.5 * (0.5 * i + 0.25), 1e-5);
+            EXPECT_NEAR(near[grid.index({i, 2, 1})], 0.5 * std::abs(0.5 * i + 0.25 - 4.25),
+                        method == LightGridMethod::Bresenham ? 0.1251 : 1e-5);
+        }
+        // Bresenham's line has whole voxels: half of one is in doubt at the lamp.
+        EXPECT_NEAR(near[grid.index({12, 4, 3})],
+                    0.5 * length(grid.center({12, 4, 3}) - lamp.place),
+                    method == LightGridMethod::Bresenham ? 0.22 : 1e-5);
+    }
+}
+
 // Bresenham's and the sweep's errors fall with the size of the cells.
 TEST(LightGrid, ConvergesToTheExactLine) {
     Job job;

@@ -26,6 +26,24 @@ struct ExtinctionGrid {
     Vec3d center(const Vec3i& c) const { return box.lo + (Vec3d(c) + Vec3d(0.5)) * cell_size(); }
 };
 
+// What several media are in the cells of a regular grid, in the order of ExtinctionGrid: all that
+// methods on graphics hardware need. A medium's coefficients are its constant cross sections times
+// the density, and for scattering times the colour too.
+struct MatterGrid {
+    Box3d box;    // metres
+    Vec3i cells;  // along each axis
+    struct Matter {
+        std::vector<float> density;
+        std::vector<Vec3f> color;  // weighed by density; empty where the medium has none
+    };
+    std::vector<Matter> media;    // in the order given
+    std::vector<Vec3f> emission;  // of all media, W/(m^3 sr); empty where none glows
+};
+
+// Means of points^3 points per cell. Throws Error{Usage} for an empty box or no cells.
+MatterGrid bake_matter(std::span<const std::shared_ptr<const Medium>> media, const Box3d& box,
+                       const Vec3i& cells, int points, Job& job);
+
 // The mean extinction of each cell of `box`, all media together, from `points`^3 points per cell.
 // For methods that need a regular grid. Throws Error{Usage} for an empty box or no cells.
 ExtinctionGrid bake(std::span<const std::shared_ptr<const Medium>> media, const Box3d& box,

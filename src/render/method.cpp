@@ -5,17 +5,29 @@
 #include <vector>
 
 #include "base/error.h"
+#include "render/billboards/billboards.h"
 #include "render/field/field.h"
+#include "render/march/gpu_march.h"
 #include "render/march/march.h"
 #include "render/params.h"
 #include "render/path/path.h"
+#include "render/points/points.h"
+#include "render/slices/slices.h"
 
 namespace gischt {
 namespace {
 
-constexpr std::array<MethodInfo, 3> methods{{
+constexpr std::array<MethodInfo, 7> methods{{
     {"field", field_simulates, field_leaves_out, field_cost,
      [](const RenderParams& p) { return make_field_method(p.field); }},
+    {"points", points_simulates, points_leaves_out, points_cost,
+     [](const RenderParams& p) { return make_points_method(p.points); }},
+    {"billboards", billboards_simulates, billboards_leaves_out, billboards_cost,
+     [](const RenderParams& p) { return make_billboards_method(p.billboards); }},
+    {"slices", slices_simulates, slices_leaves_out, slices_cost,
+     [](const RenderParams& p) { return make_slices_method(p.slices); }},
+    {"gpu_march", gpu_march_simulates, gpu_march_leaves_out, gpu_march_cost,
+     [](const RenderParams& p) { return make_gpu_march_method(p.gpu_march); }},
     {"march", march_simulates, march_leaves_out, march_cost,
      [](const RenderParams& p) { return make_march_method(p.march); }},
     {"path", path_simulates, path_leaves_out, path_cost,
@@ -30,7 +42,15 @@ const Table<RenderParams>& render_params_table() {
             .sub("march", &RenderParams::march, march_table(), {.help = "Of the method 'march'"})
             .sub("field", &RenderParams::field, field_params_table(),
                  {.help = "Of the method 'field'"})
-            .sub("path", &RenderParams::path, path_table(), {.help = "Of the method 'path'"});
+            .sub("path", &RenderParams::path, path_table(), {.help = "Of the method 'path'"})
+            .sub("points", &RenderParams::points, points_table(),
+                 {.help = "Of the method 'points'"})
+            .sub("billboards", &RenderParams::billboards, billboards_table(),
+                 {.help = "Of the method 'billboards'"})
+            .sub("slices", &RenderParams::slices, slices_table(),
+                 {.help = "Of the method 'slices'"})
+            .sub("gpu_march", &RenderParams::gpu_march, gpu_march_table(),
+                 {.help = "Of the method 'gpu_march'"});
     return table;
 }
 

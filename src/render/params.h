@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "render/billboards/billboards_params.h"
 #include "render/field/field_params.h"
+#include "render/march/gpu_march_params.h"
 #include "render/march/march_params.h"
 #include "render/path/path_params.h"
+#include "render/points/points_params.h"
+#include "render/slices/slices_params.h"
 #include "schema/table.h"
 
 namespace gischt {
@@ -13,6 +17,10 @@ struct RenderParams {
     MarchParams march;
     FieldParams field;
     PathParams path;
+    PointsParams points;
+    BillboardsParams billboards;
+    SlicesParams slices;
+    GpuMarchParams gpu_march;
 };
 
 const Table<RenderParams>& render_params_table();

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "io/image_file.h"
 #include "scene/builtin.h"
 #include "scene/preset.h"
 #include "schema/override.h"
@@ -122,6 +123,13 @@ static std::string picture_text(Value whole) {
     return to_inline_toml(whole);
 }
 
+// The picture of the billboards, which the method itself cannot read.
+static void read_sprites(RenderSection& render) {
+    BillboardsParams& b = render.methods.billboards;
+    if (render.method != "billboards" || b.file.empty()) return;
+    b.picture = std::make_shared<const Image>(read_image(b.file));
+}
+
 LoadedScene load_scene_tree(const std::string& name, Value tree, const std::string& preset,
                             const std::vector<std::string>& overrides) {
     if (!preset.empty()) apply_preset(tree, preset);
@@ -129,6 +137,7 @@ LoadedScene load_scene_tree(const std::string& name, Value tree, const std::stri
     LoadedScene loaded;
     loaded.name = name;
     loaded.scene = read(tree, scene_table(), "");
+    read_sprites(loaded.scene.render);
     const Value whole = to_value(loaded.scene, scene_table());
     loaded.hash = hex(hash_bytes(to_inline_toml(whole)));
     loaded.picture_hash = hex(hash_bytes(picture_text(whole)));

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "render/realtime/drawer.h"
+#include "render/realtime/lit_volume.h"
+#include "render/slices/slices_params.h"
+
+namespace gischt {
+
+// Draws media as three stacks of slices.
+class SliceDrawer : public SceneDrawer {
+  public:
+    // The device must outlive it.
+    SliceDrawer(GlDevice& device, const SlicesParams& params);
+
+    void upload(const View& view, Job& job) override;
+    void draw(const DrawOrder& order, const OpaqueLayer& opaque,
+              const GlFramebuffer& target) override;
+    const LitGrid& grid() const override { return *grid_; }
+    const LitVolume& light() const { return volume_; }
+
+  private:
+    void draw_stack(int axis, const GlCamera& camera, const DrawOrder& order,
+                    const OpaqueLayer& opaque);
+    void mix(const GlFramebuffer& stack, double share, bool is_first, const GlFramebuffer& target);
+
+    GlDevice& device_;
+    SlicesParams params_;
+    GlProgram grey_, colored_, mix_;
+    LitVolume volume_;
+    std::optional<LitGrid> grid_;
+    std::optional<GlFramebuffer> scratch_;
+};
+
+}  // namespace gischt
