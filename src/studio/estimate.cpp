@@ -50,7 +50,8 @@ struct Estimator {
     }
     FluidEstimate operator()(const FluidOf<ProceduralParams>& f) const {
         const ProceduralParams& p = f.source;
-        const int fields = 1 + p.temperature.has_value() + p.flame.has_value() + 3 * is_moving(p);
+        const int fields =
+            1 + p.temperature.has_value() + p.flame.has_value() + p.surface + 3 * is_moving(p);
         return box_filled("procedural", p, fields, seconds_per_octave * p.noise.octaves);
     }
 
