@@ -179,6 +179,9 @@ CellDistances cell_distances(const Vec3d& p, double w, std::uint64_t seed) {
         for (int n = 0; n < size * size * size; ++n) {
             const Vec3i d = Vec3i(n % size, n / size % size, n / (size * size)) - Vec3i(reach);
             if (max_component(abs(d)) < reach) continue;
+            // A cell that is further than the second nearest point holds none that counts.
+            const Vec3d low = Vec3d(c + d) - p, gap = max(max(low, -low - Vec3d(1)), Vec3d());
+            if (dot(gap, gap) >= second) continue;
             const Vec3d to = swinging_point(c + d, w, seed) - p;
             const double square = dot(to, to);
             second = std::min(second, std::max(first, square));

@@ -16,23 +16,24 @@ namespace {
 // [0,1], from the covariance 3/4 of the gradients.
 constexpr double noise_deviation = 0.29275;
 
-// Of one octave: what is subtracted, the standard deviation, and the largest difference from the
-// mean. The first line follows from the noise; the others were measured on some 10^6 points.
+// Of one octave: what is subtracted, the standard deviation, and the least and the largest value.
+// The first line follows from the noise; the other means and deviations were measured on some 10^6
+// points. The point of a cell is at most its diagonal away, a neighbour's at most sqrt(4.25).
 struct KindStatistics {
-    double mean, deviation, reach;
+    double mean, deviation, least, most;
 };
 KindStatistics statistics_of(TurbulenceKind kind) {
     switch (kind) {
         case TurbulenceKind::Fbm:
-            return {0, noise_deviation, 1.7321};
+            return {0, noise_deviation, -1.7321, 1.7321};
         case TurbulenceKind::Billow:
-            return {0.2379, 0.1709, 1.4942};
+            return {0.2379, 0.1709, 0, 1.7321};
         case TurbulenceKind::Ridged:
-            return {0.6100, 0.2412, 0.6100};
+            return {0.6100, 0.2412, 0, 1};
         case TurbulenceKind::Cells:
-            return {-0.5321, 0.1808, 2.0};
+            return {-0.5321, 0.1808, -1.7321, 0};
         case TurbulenceKind::Walls:
-            return {-0.1872, 0.1552, 2.0};
+            return {-0.1872, 0.1552, -2.0616, 0};
     }
     return {};
 }
@@ -72,12 +73,14 @@ Turbulence::Turbulence(const TurbulenceShape& shape) : kind_(shape.kind) {
     // Octaves are independent: their variances add.
     const KindStatistics kind = statistics_of(kind_);
     const double scale = 1 / (kind.deviation * std::sqrt(squares));
-    bound_ = kind.reach * sum * scale;
-    double rest = bound_;
+    double rest = sum * scale;
+    least_ = (kind.least - kind.mean) * rest;
+    most_ = (kind.most - kind.mean) * rest;
     for (Octave& o : octaves_) {
         o.weight *= scale;
-        o.rest = rest;
-        rest -= kind.reach * o.weight;
+        o.rest_least = (kind.least - kind.mean) * rest;
+        o.rest_most = (kind.most - kind.mean) * rest;
+        rest -= o.weight;
     }
 }
 
@@ -90,7 +93,7 @@ double Turbulence::value_within(const Vec3d& p, double w, double low, double hig
     const double mean = statistics_of(kind_).mean;
     double sum = 0;
     for (const Octave& o : octaves_) {
-        if (sum + o.rest <= low || sum - o.rest >= high) break;
+        if (sum + o.rest_most <= low || sum + o.rest_least >= high) break;
         sum += o.weight * (octave_value(kind_, o.place.point(p), o.rate * w, o.seed) - mean);
     }
     return sum;

@@ -39,8 +39,9 @@ class Turbulence {
     // The same, but where it is at most `low` or at least `high`, any other such value: the octaves
     // that cannot change that are spared.
     double value_within(const Vec3d& p, double w, double low, double high) const;
-    // No |value| is larger.
-    double bound() const { return bound_; }
+    // No value is outside of these: 0 is between them.
+    double least() const { return least_; }
+    double most() const { return most_; }
 
   private:
     struct Octave {
@@ -48,11 +49,11 @@ class Turbulence {
         double rate;      // of time
         double weight;
         std::uint64_t seed;
-        double rest = 0;  // most that this and later octaves add
+        double rest_least = 0, rest_most = 0;  // that this and later octaves add
     };
     TurbulenceKind kind_;
     std::vector<Octave> octaves_;
-    double bound_ = 0;
+    double least_ = 0, most_ = 0;
 };
 
 // p moved by gradient noise, `amount` being the standard deviation of each component in units of

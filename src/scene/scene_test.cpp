@@ -153,6 +153,8 @@ TEST(Preview, HalvesWhatIsComputed) {
     EXPECT_TRUE(sets_of("plume", {"fluid.file=a.vdb"}).empty());
     const LoadedScene cloud = load_scene("cloud", "", sets_of("cloud"));
     EXPECT_EQ(std::get<FluidOf<CloudParams>>(cloud.scene.fluids[0]).source.resolution, 128);
+    const LoadedScene fog = load_scene("fogbank", "", sets_of("fogbank"));
+    EXPECT_EQ(std::get<FluidOf<ProceduralParams>>(fog.scene.fluids[0]).source.resolution, 105);
 }
 
 TEST(Preset, EveryOneChangesTheLookAndNotTheMotion) {

@@ -220,14 +220,22 @@ struct SourceOf {
         return made_by(make_cloud, f.source);
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<ProceduralParams>& f) const {
-        return made_by(make_procedural, f.source);
+        std::shared_ptr<const MeshDistance> mesh;
+        if (f.source.shape == ProceduralShape::Mesh) {
+            Job unheard;  // what is said of a mesh is about its colours
+            mesh = std::make_shared<MeshDistance>(
+                filled_mesh(f.source.mesh, read_mesh(f.source.mesh.file, unheard).mesh));
+        }
+        const auto make = [mesh](const ProceduralParams& p, const Vec3d& up, double t, Job& job) {
+            return make_procedural(p, up, t, job, mesh.get());
+        };
+        return made_by(make, f.source);
     }
 
   private:
     // From a function of the parameters, the direction up and the time.
-    template <class P>
-    std::unique_ptr<FluidSource> made_by(Frame (*make)(const P&, const Vec3d&, double, Job&),
-                                         const P& source) const {
+    template <class Make, class P>
+    std::unique_ptr<FluidSource> made_by(const Make& make, const P& source) const {
         return std::make_unique<StatelessSource>(
             [make, params = source, up = scene.up_vector(), fps = scene.fps](int number, Job& job) {
                 Frame frame = make(params, up, number / fps, job);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "scene/load.h"
 #include "schema/toml.h"
 
@@ -182,6 +185,35 @@ TEST(World, PlacesParticlesWithTheirFluid) {
     EXPECT_LT(length(seen.position[0] - Vec3d(5, 9, 7)), 1e-12);
     EXPECT_LT(length(seen.velocity[0] - Vec3f(-6, 3, 9)), 1e-5f);
     EXPECT_FLOAT_EQ(seen.radius[0], 1.5f);
+}
+
+// A tetrahedron with its corner at the origin, of 1/6 of the cube of its legs.
+TEST(World, FillsTheMeshOfAFile) {
+    const auto file = std::filesystem::temp_directory_path() / "gischt_world_test_corner.obj";
+    const auto write = [&](const char* faces) {
+        std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" << faces;
+    };
+    const std::string keys =
+        "[fluid]\ntype = 'procedural'\nshape = 'mesh'\nmin = [0, 0, 0]\nmax = [3, 3, 3]\n"
+        "resolution = 90\nedge = 0.01\nposition = [0.5, 0.5, 0.5]\n"
+        "mesh = { scale = 2, file = '" +
+        file.string() + "' }\n";
+    const Scene scene = load_scene_tree("test", parse_toml(keys, "t"), "", {}).scene;
+    const auto filled = [&] {
+        Job job;
+        const Frame frame = make_source(scene, scene.fluids[0])->frame(1, job);
+        double sum = 0;
+        for (const float v : frame.find("density")->component[0].values()) sum += double(v);
+        return sum / (30.0 * 30 * 30);
+    };
+    write("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    // The edge is less than half a cell, so a cell is in or out; their middles lie on either side
+    // of the slanting face alike.
+    EXPECT_NEAR(filled(), 8.0 / 6, 0.003);
+    write("f 1 3 2\nf 1 2 4\nf 1 4 3\n");
+    EXPECT_THROW(filled(), Error);  // open
+    std::filesystem::remove(file);
+    EXPECT_THROW(filled(), Error);  // missing
 }
 
 }  // namespace

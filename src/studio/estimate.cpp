@@ -18,7 +18,12 @@ constexpr double bytes_per_cell = 150, seconds_per_cell = 3.0e-7, disk_bytes_per
 constexpr double seconds_per_cloud_cell = 1.5e-7, seconds_per_sample = 2.0e-6;
 // In eddies of two octaves, and to a density and a file: `scripts/bench particle`.
 constexpr double seconds_per_particle_step = 3e-7, seconds_per_particle = 1.5e-6;
-constexpr double seconds_per_octave = 1.0e-7;  // of a cell of procedural noise
+// Of a cell of a procedural fluid, half of the processor's time on one core: its shape, an octave
+// of gradient noise, an octave of cell noise.
+constexpr double seconds_per_shape = 5e-8, seconds_per_octave = 4.3e-8,
+                 seconds_per_cell_octave = 9e-7;
+// Of the cells, those whose noise is computed where it only moves a surface: as in `cumulus`.
+constexpr double share_near_surface = 0.15;
 
 struct Estimator {
     const Scene& scene;
@@ -50,8 +55,10 @@ struct Estimator {
     }
     FluidEstimate operator()(const FluidOf<ProceduralParams>& f) const {
         const ProceduralParams& p = f.source;
-        const int fields = 1 + p.temperature.has_value() + p.flame.has_value() + 3 * is_moving(p);
-        return box_filled("procedural", p, fields, seconds_per_octave * p.noise.octaves);
+        const int fields =
+            1 + p.temperature.has_value() + p.flame.has_value() + p.surface + 3 * is_moving(p);
+        const double share = p.threshold ? 1 : share_near_surface;
+        return box_filled("procedural", p, fields, seconds_per_shape + share * seconds_of(p.noise));
     }
 
     FluidEstimate operator()(const FluidOf<ParticleParams>& f) const {
@@ -70,6 +77,15 @@ struct Estimator {
     }
 
   private:
+    // Of noise at a point; to warp it takes three further ones.
+    static double seconds_of(const TurbulenceParams& noise) {
+        const bool is_of_cells =
+            noise.kind == TurbulenceKind::Cells || noise.kind == TurbulenceKind::Walls;
+        const bool is_warped = !noise.warp.is_constant() || noise.warp.at(0) != 0;
+        return (is_of_cells ? seconds_per_cell_octave : seconds_per_octave) * noise.octaves +
+               (is_warped ? 3 * seconds_per_octave : 0);
+    }
+
     // At most: as if every cell of the box were filled.
     template <class P>
     static FluidEstimate box_filled(const char* source, const P& p, int fields,

@@ -107,6 +107,10 @@ TEST(Estimate, GrowsWithTheCells) {
     const auto large = estimate_fluids(load_scene("plume", "", {"domain.resolution=128"}).scene);
     EXPECT_EQ(small[0].cells, Vec3i(40, 40, 64));
     EXPECT_NEAR(large[0].memory / small[0].memory, 8, 0.01);
+    // A field for density, three for the wind.
+    const auto fog = estimate_fluids(load_scene("fogbank", "", {}).scene);
+    EXPECT_EQ(fog.at(0).cells, Vec3i(197, 210, 24));
+    EXPECT_DOUBLE_EQ(fog.at(0).memory, 4.0 * 4 * 197 * 210 * 24);
     EXPECT_THROW(estimate_fluids(load_scene("cloud", "", {"fluid.file=/nowhere.vdb"}).scene),
                  Error);
 }

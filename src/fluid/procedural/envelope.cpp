@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid/procedural/envelope.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "base/error.h"
 #include "math/box.h"
 
 namespace gischt {
@@ -12,7 +14,8 @@ static std::vector<BlobParams> blobs_of(const ProceduralParams& params) {
     return params.shape == ProceduralShape::Blobs ? params.blobs : std::vector<BlobParams>();
 }
 
-Envelope::Envelope(const ProceduralParams& params, const Vec3d& up, double time)
+Envelope::Envelope(const ProceduralParams& params, const MeshDistance* mesh, const Vec3d& up,
+                   double time)
     : shape_(params.shape),
       kernel_(params.kernel),
       blobbiness_(params.blobbiness),
@@ -24,7 +27,10 @@ Envelope::Envelope(const ProceduralParams& params, const Vec3d& up, double time)
       radius_(params.radius.at(time)),
       thickness_(params.thickness.at(time)),
       base_(params.base),
-      blobs_(blobs_of(params), params.kernel, params.blobbiness, time) {}
+      blobs_(blobs_of(params), params.kernel, params.blobbiness, time),
+      mesh_(mesh) {
+    GISCHT_ASSERT(mesh_ || shape_ != ProceduralShape::Mesh);
+}
 
 // Below the nearest face of a box; outside minus the distance to it.
 static double depth_in_box(const Vec3d& from_center, const Vec3d& half_size) {
@@ -51,21 +57,37 @@ double Envelope::depth_of_solid(const Vec3d& p) const {
             }
             return depth;
         }
+        case ProceduralShape::Mesh:
+            return depth_in_mesh({}, p);
         case ProceduralShape::Blobs:
             break;
     }
     return -std::numeric_limits<double>::infinity();
 }
 
+// What parts_near() says of a mesh: a region is on one side of it, or it may be on both.
+enum MeshSide { OnBothSides, AllInside, AllOutside };
+
+double Envelope::depth_in_mesh(std::span<const int> parts, const Vec3d& p) const {
+    const Vec3d q = p - position_;
+    const int side = parts.empty() ? OnBothSides : parts[0];
+    const bool is_inside = side == OnBothSides ? mesh_->is_inside(q) : side == AllInside;
+    return is_inside ? mesh_->distance(q) : -mesh_->distance(q);
+}
+
 std::vector<int> Envelope::parts_near(const Vec3d& center, double radius,
                                       double displacement) const {
     if (shape_ == ProceduralShape::Blobs) return blobs_.near(center - position_, radius);
     // Depths change by no more than the way.
-    const bool is_near = cut_at_base(depth_of_solid(center), center) + radius + displacement > 0;
-    return is_near ? std::vector<int>{0} : std::vector<int>{};
+    const double depth = depth_of_solid(center);
+    if (cut_at_base(depth, center) + radius + displacement <= 0) return {};
+    const bool is_on_one_side = shape_ == ProceduralShape::Mesh && std::abs(depth) > radius;
+    return {!is_on_one_side ? OnBothSides : depth > 0 ? AllInside : AllOutside};
 }
 
 EnvelopeSample Envelope::at(std::span<const int> parts, const Vec3d& p) const {
+    if (shape_ == ProceduralShape::Mesh)
+        return {cut_at_base(depth_in_mesh(parts, p), p), 1, drift_};
     if (shape_ != ProceduralShape::Blobs) return {cut_at_base(depth_of_solid(p), p), 1, drift_};
     const BlobSample blob = blobs_.at(parts, p - position_);
     if (blob.field <= 0) return {-std::numeric_limits<double>::infinity(), 0, {}};

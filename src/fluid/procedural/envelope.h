@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fluid/procedural/params.h"
+#include "shape/mesh_distance.h"
 
 namespace gischt {
 
@@ -12,12 +13,15 @@ struct EnvelopeSample {
     Vec3d drift;       // m/s with which the shape moves here
 };
 
-// The shape of a procedural fluid at one moment. Depths are distances for a ball, box, slab and
-// single blob; where blobs melt together, the distance at which a lone one would have their field.
+// The shape of a procedural fluid at one moment. Depths are distances for a ball, box, slab, mesh
+// and single blob; where blobs melt together, the distance at which a lone one would have their
+// field.
 class Envelope {
   public:
     // `up` is a unit vector. A slab and the whole box end at the sides of the domain.
-    Envelope(const ProceduralParams& params, const Vec3d& up, double time);
+    // `mesh` is that of the shape of this name, else null; it must outlive the envelope.
+    Envelope(const ProceduralParams& params, const MeshDistance* mesh, const Vec3d& up,
+             double time);
 
     // The parts that matter within `radius` of a point where noise moves the surface by up to
     // `displacement`; empty where there is nothing.
@@ -28,6 +32,7 @@ class Envelope {
 
   private:
     double depth_of_solid(const Vec3d& p) const;
+    double depth_in_mesh(std::span<const int> parts, const Vec3d& p) const;
     double cut_at_base(double depth, const Vec3d& p) const {
         return base_ ? std::min(depth, dot(p, up_) - *base_) : depth;
     }
@@ -40,6 +45,7 @@ class Envelope {
     double radius_, thickness_;
     std::optional<double> base_;
     Blobs blobs_;
+    const MeshDistance* mesh_;
 };
 
 }  // namespace gischt

@@ -37,6 +37,18 @@ const Table<TurbulenceParams>& turbulence_table() {
     return table;
 }
 
+const Table<MeshShapeParams>& mesh_shape_table() {
+    using P = MeshShapeParams;
+    static const Table<P> table =
+        Table<P>("mesh_shape", "A closed mesh that a procedural fluid fills")
+            .add("file", &P::file, {.help = "Mesh: .obj, .ply, .gltf, .glb"})
+            .add("scale", &P::scale,
+                 {.help = "Scales it about its origin, at first", .min = 0, .min_open = true})
+            .add("rotate_degrees", &P::rotate_degrees,
+                 {.unit = "degrees", .help = "Turns it around x, then y, then z"});
+    return table;
+}
+
 static void add_shape(Table<ProceduralParams>& table) {
     using P = ProceduralParams;
     table
@@ -49,10 +61,12 @@ static void add_shape(Table<ProceduralParams>& table) {
                  {"ball", ProceduralShape::Ball},
                  {"box", ProceduralShape::Box},
                  {"slab", ProceduralShape::Slab, "a layer to the sides of the box"},
-                 {"blobs", ProceduralShape::Blobs, "balls and hoses that melt together"}},
+                 {"blobs", ProceduralShape::Blobs, "balls and hoses that melt together"},
+                 {"mesh", ProceduralShape::Mesh, "what a closed mesh encloses"}},
                 {.help = "Where there is any"})
         .add("position", &P::position,
-             {.unit = "m", .help = "Middle of a ball or box, base of a slab; moves blobs"})
+             {.unit = "m",
+              .help = "Middle of a ball or box, base of a slab; moves blobs and a mesh"})
         .add("radius", &P::radius, {.unit = "m", .help = "Of a ball", .min = 0})
         .add("size", &P::size, {.unit = "m", .help = "Edges of a box", .min = 0})
         .add("thickness", &P::thickness, {.unit = "m", .help = "Of a slab", .min = 0})
@@ -67,7 +81,8 @@ static void add_shape(Table<ProceduralParams>& table) {
              {.help = "Of Blinn's kernel: more keeps blobs apart",
               .min = 0,
               .max = 20,
-              .min_open = true});
+              .min_open = true})
+        .sub("mesh", &P::mesh, mesh_shape_table(), {.help = "The mesh of the shape 'mesh'"});
 }
 
 static void add_content(Table<ProceduralParams>& table) {
@@ -102,6 +117,9 @@ static void add_content(Table<ProceduralParams>& table) {
               .min_open = true})
         .add("ambient_temperature", &P::ambient_temperature,
              {.unit = "K", .help = "Of the air around", .min = 0, .min_open = true})
+        .add("surface", &P::surface,
+             {.help = "Add the field 'surface', the level set of the displaced shape: metres, "
+                      "negative inside, within three cells"})
         .add("velocity", &P::velocity,
              {.unit = "m/s", .help = "Wind that carries the noise through the shape"})
         .sub("noise", &P::noise, turbulence_table(), {.help = "What tears it"});
@@ -118,6 +136,8 @@ const Table<ProceduralParams>& procedural_table() {
                 fail("max", "must be above 'min' in every component");
             if (p.shape == ProceduralShape::Blobs && p.blobs.empty())
                 fail("shape", "is 'blobs' and there is no blob: add [[fluid.blob]]");
+            if (p.shape == ProceduralShape::Mesh && p.mesh.file.empty())
+                fail("shape", "is 'mesh' and there is none: give [fluid.mesh] a 'file'");
         });
         return t;
     }();

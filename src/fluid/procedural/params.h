@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/units.h"
@@ -10,7 +11,7 @@
 
 namespace gischt {
 
-enum class ProceduralShape { All, Ball, Box, Slab, Blobs };
+enum class ProceduralShape { All, Ball, Box, Slab, Blobs, Mesh };
 
 // The noise that tears a procedural fluid.
 struct TurbulenceParams {
@@ -26,6 +27,14 @@ struct TurbulenceParams {
 };
 const Table<TurbulenceParams>& turbulence_table();
 
+// A closed mesh that is filled, as its file says but for:
+struct MeshShapeParams {
+    std::string file;
+    double scale = 1;      // about its origin, at first
+    Vec3d rotate_degrees;  // around x, then y, then z
+};
+const Table<MeshShapeParams>& mesh_shape_table();
+
 // A fluid whose density is a formula. With d(x) the depth below the surface of the shape (m,
 // positive inside, at most the height above the base) and n(x,t) the noise (mean 0, standard
 // deviation 1), which the wind carries:
@@ -37,13 +46,14 @@ struct ProceduralParams {
     Vec3d min{-1, -1, 0}, max{1, 1, 2};  // m
 
     ProceduralShape shape = ProceduralShape::All;
-    Keyed<Vec3d> position;          // m, middle of a ball or box; on the base of a slab
+    Keyed<Vec3d> position;  // m, middle of a ball or box; on the base of a slab; origin of a mesh
     Keyed<double> radius = 0.5;     // m, ball
     Keyed<Vec3d> size = Vec3d(1);   // m, edges of a box
     Keyed<double> thickness = 0.5;  // m, slab
     std::vector<BlobParams> blobs;
     BlobKernel kernel = BlobKernel::Wyvill;
     double blobbiness = 0.7;  // of Blinn's kernel
+    MeshShapeParams mesh;
 
     Keyed<double> edge = 0.1;                // m over which the density rises
     Keyed<double> displacement = 0;          // m per standard deviation of the noise
@@ -52,9 +62,10 @@ struct ProceduralParams {
     std::optional<double> base;              // m along `up`: nothing is below
     std::optional<Keyed<double>> falloff;    // m
     Keyed<double> density = 1;
-    std::optional<Keyed<double>> temperature;                  // K, in the core
-    std::optional<Keyed<double>> flame;                        // 1, in the core
-    Keyed<double> core = 0.2;                                  // m over which heat rises
+    std::optional<Keyed<double>> temperature;  // K, in the core
+    std::optional<Keyed<double>> flame;        // 1, in the core
+    Keyed<double> core = 0.2;                  // m over which heat rises
+    bool surface = false;  // a level set where d + displacement n is 0, whatever the noise fills
     double ambient_temperature = gischt::ambient_temperature;  // K
     Keyed<Vec3d> velocity;  // m/s of the wind that carries the noise
     TurbulenceParams noise;

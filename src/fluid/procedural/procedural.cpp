@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/units.h"
 #include "fluid/procedural/envelope.h"
 #include "math/keyframe_integral.h"
 
@@ -20,17 +21,22 @@ TurbulenceShape resolved(const TurbulenceParams& p, double h) {
     return {p.kind, octaves, p.lacunarity, p.gain, static_cast<std::uint64_t>(p.seed)};
 }
 
+// Half the width of the level set, as OpenVDB has it by custom.
+constexpr int band_cells = 3;
+
 // What a cell holds.
 struct Content {
     float density = 0, heat = 0;  // heat: share of the core's
+    float surface = 0;            // m to the surface, negative inside, within the band
     Vec3f drift;                  // m/s of the shape
 };
 
 // The formula of ProceduralParams at one moment.
 class Formula {
   public:
-    Formula(const ProceduralParams& p, const Vec3d& up, double time, double h)
-        : envelope_(p, up, time),
+    Formula(const ProceduralParams& p, const MeshDistance* mesh, const Vec3d& up, double time,
+            double h)
+        : envelope_(p, mesh, up, time),
           noise_(resolved(p.noise, h)),
           origin_(p.position.at(time) + integral(p.velocity, time)),
           size_(p.noise.scale * p.noise.stretch),
@@ -42,21 +48,20 @@ class Formula {
           displacement_(p.displacement.at(time)),
           density_(p.density.at(time)),
           softness_(p.softness.at(time)),
-          saturation_(p.temperature || p.flame ? std::max(edge_, core_) : edge_) {
+          band_(p.surface ? band_cells * h : 0),
+          saturation_(std::max(p.temperature || p.flame ? std::max(edge_, core_) : edge_, band_)) {
         if (p.threshold) threshold_ = p.threshold->at(time);
         if (p.falloff) falloff_ = p.falloff->at(time);
     }
 
-    // Metres by which noise moves the surface at most.
-    double reach() const { return std::abs(displacement_) * noise_.bound(); }
     std::vector<int> parts_near(const Vec3d& center, double radius) const {
-        return envelope_.parts_near(center, radius, reach());
+        return envelope_.parts_near(center, radius, outwards(displacement_) + band_);
     }
 
     Content at(std::span<const int> parts, const Vec3d& x) const {
         const EnvelopeSample shape = envelope_.at(parts, x);
         const double throw_ = displacement_ * shape.hold;
-        if (shape.depth + std::abs(throw_) * noise_.bound() <= 0) return {};
+        if (shape.depth + outwards(throw_) <= -band_) return {.surface = static_cast<float>(band_)};
 
         const double n = noise(x, shape.depth, throw_);
         const double depth = shape.depth + throw_ * n;
@@ -65,10 +70,15 @@ class Formula {
         const double falloff =
             falloff_ ? std::exp(-std::max(0.0, envelope_.height(x)) / *falloff_) : 1.0;
         return {static_cast<float>(density_ * rise * falloff),
-                static_cast<float>(smoothstep(depth / core_) * fill), Vec3f(shape.drift)};
+                static_cast<float>(smoothstep(depth / core_) * fill),
+                static_cast<float>(std::clamp(-depth, -band_, band_)), Vec3f(shape.drift)};
     }
 
   private:
+    // Metres by which noise moves the surface outwards at most.
+    double outwards(double displacement) const {
+        return displacement * (displacement > 0 ? noise_.most() : noise_.least());
+    }
     // As exact as it matters to what follows.
     double noise(const Vec3d& x, double depth, double throw_) const {
         // Between the first of these values and the last anything changes.
@@ -78,7 +88,7 @@ class Formula {
             high = *threshold_ + softness_;
         }
         if (throw_ != 0) {
-            const double a = -depth / throw_, b = (saturation_ - depth) / throw_;
+            const double a = (-band_ - depth) / throw_, b = (saturation_ - depth) / throw_;
             low = std::min({low, a, b});
             high = std::max({high, a, b});
         }
@@ -94,7 +104,7 @@ class Formula {
     Vec3d size_;  // m, of the largest features
     double warp_, moment_;
     std::uint64_t seed_;
-    double edge_, core_, displacement_, density_, softness_, saturation_;
+    double edge_, core_, displacement_, density_, softness_, band_, saturation_;
     std::optional<double> threshold_, falloff_;
 };
 
@@ -111,13 +121,21 @@ TileField<float> packed(const TileField<float>& all, const std::vector<int>& kep
 
 // One value after the other on the tiles that may hold any, then on those that do.
 struct Fields {
-    TileField<float> density, heat;
+    TileField<float> density, heat, surface;
     std::vector<TileField<float>> drift;
     std::vector<char> is_used;
+    float band;  // m
 
-    Fields(const TileMap::Ptr& map, bool is_hot, bool is_drifting)
-        : density(map), is_used(static_cast<std::size_t>(map->size())) {
+    Fields(const TileMap::Ptr& map, const ProceduralParams& params, double h)
+        : density(map),
+          is_used(static_cast<std::size_t>(map->size())),
+          band(static_cast<float>(band_cells * h)) {
+        const bool is_hot = params.temperature || params.flame, is_drifting = is_moving(params);
         if (is_hot) heat = TileField<float>(map);
+        if (params.surface) {
+            surface = TileField<float>(map);
+            std::ranges::fill(surface.values(), band);
+        }
         if (is_drifting) drift.assign(3, TileField<float>(map));
     }
 
@@ -126,7 +144,9 @@ struct Fields {
         if (!heat.is_empty()) heat.tile(tile)[i] = c.heat;
         for (std::size_t a = 0; a < drift.size(); ++a)
             drift[a].tile(tile)[i] = c.drift[static_cast<int>(a)];
-        if (c.density > 0) is_used[static_cast<std::size_t>(tile)] = 1;
+        if (!surface.is_empty()) surface.tile(tile)[i] = c.surface;
+        if (c.density > 0 || (!surface.is_empty() && c.surface < band))
+            is_used[static_cast<std::size_t>(tile)] = 1;
     }
 
     void pack() {
@@ -141,6 +161,7 @@ struct Fields {
         const auto map = TileMap::sparse(std::move(tiles), density.map().bounds());
         density = packed(density, kept, map);
         if (!heat.is_empty()) heat = packed(heat, kept, map);
+        if (!surface.is_empty()) surface = packed(surface, kept, map);
         for (auto& component : drift) component = packed(component, kept, map);
     }
 };
@@ -190,21 +211,37 @@ bool is_moving(const ProceduralParams& params) {
     return is;
 }
 
-Frame make_procedural(const ProceduralParams& params, const Vec3d& up, double time, Job& job) {
+MeshDistance filled_mesh(const MeshShapeParams& params, Mesh mesh) {
+    Transform place = Transform::scale_translate(params.scale, {});
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3d e;
+        e[axis] = 1;
+        place = Transform::rotation(e, radians(params.rotate_degrees[axis])) * place;
+    }
+    try {
+        return MeshDistance(transformed(std::move(mesh), place));
+    } catch (const Error& e) {
+        throw Error(e.kind(), params.file, e.fact(), e.hint());
+    }
+}
+
+Frame make_procedural(const ProceduralParams& params, const Vec3d& up, double time, Job& job,
+                      const MeshDistance* mesh) {
     const Vec3d size = params.max - params.min;
     require(min_component(size) > 0, "max - min");
     require(params.edge.at(time) > 0, "edge");
     require(params.core.at(time) > 0, "core");
     require(params.softness.at(time) > 0, "softness");
     require(!params.falloff || params.falloff->at(time) > 0, "falloff");
+    if (params.shape == ProceduralShape::Mesh && !mesh)
+        throw Error(ErrorKind::Usage, "procedural", "the shape 'mesh' needs a mesh");
     const double h = max_component(size) / params.resolution;
     const Vec3i cells = max(floor(size / h + Vec3d(0.5)), Vec3i(2));
-    const Formula formula(params, up, time, h);
+    const Formula formula(params, mesh, up, time, h);
 
     // Evaluate the formula where the shape is near, ...
     const auto map = TileMap::sparse(tiles_near(formula, cells, params.min, h), {{}, cells});
-    const bool is_hot = params.temperature || params.flame;
-    Fields fields(map, is_hot, is_moving(params));
+    Fields fields(map, params, h);
     const Vec3f wind(params.velocity.at(time));
     parallel_for(map->size(), 1, [&](int t) {
         if (job.is_cancelled()) return;
@@ -233,6 +270,13 @@ Frame make_procedural(const ProceduralParams& params, const Vec3d& up, double ti
     }
     if (params.flame)
         frame.fields["flame"] = heated(fields.heat, to_world, 0, params.flame->at(time));
+    if (params.surface) {
+        Field& surface = frame.fields["surface"];
+        surface.component.push_back(std::move(fields.surface));
+        surface.background[0] = fields.band;
+        surface.kind = FieldClass::LevelSet;
+        surface.to_world = to_world;
+    }
     if (!fields.drift.empty()) {
         Field& velocity = frame.fields["velocity"];
         velocity.component = std::move(fields.drift);

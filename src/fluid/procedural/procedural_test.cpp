@@ -174,6 +174,111 @@ TEST(Procedural, NothingAnywhereIsAFrameWithoutTiles) {
     EXPECT_EQ(make(p).find("density")->map().size(), 0);
 }
 
+// The mesh of a ball lies within its facets' height of it, and so does the depth.
+TEST(Procedural, AMeshOfABallIsTheBall) {
+    ProceduralParams p = ball();
+    p.position = Vec3d(0.1, 0, 0);
+    p.displacement = 0.03;
+    const Frame expected = make(p);
+    p.shape = ProceduralShape::Mesh;
+    p.mesh.file = "ball.ply";
+    p.mesh.scale = 0.4;
+    p.mesh.rotate_degrees = Vec3d(20, 30, 40);
+    const MeshDistance mesh = filled_mesh(p.mesh, ball_mesh(2, 5));
+    Job job;
+    const Frame frame = make_procedural(p, up, 0, job, &mesh);
+    // Facets of level 5 leave 0.3 mm; the density rises by 15 per metre at most.
+    const Field &a = *expected.find("density"), &b = *frame.find("density");
+    double most = 0;
+    for (const double x : {-0.72, -0.3, 0.4, 0.85}) {
+        for (double y = -0.9; y < 0.9; y += 0.03) {
+            for (double z = -0.9; z < 0.9; z += 0.03) {
+                most = std::max(most, std::abs(double(a.sample({x, y, z}) - b.sample({x, y, z}))));
+            }
+        }
+    }
+    EXPECT_LT(most, 15 * 0.0003);
+    EXPECT_NEAR(total(frame) / total(expected), 1, 0.002);
+}
+
+TEST(Procedural, AMeshMustBeClosedAndThere) {
+    ProceduralParams p = ball();
+    p.shape = ProceduralShape::Mesh;
+    p.mesh.file = "bowl.ply";
+    EXPECT_THROW(make(p), Error);
+    Mesh open = ball_mesh(1, 2);
+    open.triangles.pop_back();
+    try {
+        filled_mesh(p.mesh, open);
+        FAIL() << "an open mesh was taken";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::Input);
+        EXPECT_EQ(e.where(), "bowl.ply");
+        EXPECT_NE(e.fact().find("not closed"), std::string::npos);
+    }
+}
+
+// The level set is the distance to the ball within three cells, with the sign kept everywhere.
+TEST(Procedural, TheSurfaceIsADistance) {
+    ProceduralParams p = ball();
+    p.radius = 0.6;
+    p.surface = true;
+    const Frame frame = make(p);
+    const Field& surface = *frame.find("surface");
+    EXPECT_EQ(surface.kind, FieldClass::LevelSet);
+    const double h = 2.0 / 64, band = 3 * h;
+    for (double x = -0.95; x < 1; x += 0.0137) {
+        const Vec3d at(x, 0.1, -0.2);
+        const double expected = std::clamp(length(at) - 0.6, -band, band);
+        // Trilinear interpolation of a distance: a quarter of 3 h^2 / (2 r), and the band's kink.
+        const bool is_at_kink = std::abs(std::abs(length(at) - 0.6) - band) < 2 * h;
+        ASSERT_NEAR(surface.sample(at), expected, is_at_kink ? 0.5 * h : 0.002) << x;
+    }
+    // Asking for it changes nothing else.
+    p.surface = false;
+    EXPECT_NEAR(total(frame), total(make(p)), 1e-9);
+}
+
+// Noise moves the level set as it moves the density, which rises from there on.
+TEST(Procedural, TheSurfaceIsWhereDensityBegins) {
+    ProceduralParams p = ball();
+    p.radius = 0.6;
+    p.displacement = 0.05;
+    p.noise.octaves = 3;
+    p.surface = true;
+    const Frame frame = make(p);
+    const auto &surface = frame.find("surface")->component[0].values(),
+               &density = frame.find("density")->component[0].values();
+    int inside = 0;
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+        ASSERT_EQ(surface[i]<0, density[i]> 0);
+        inside += surface[i] < 0;
+    }
+    EXPECT_GT(inside, 1000);
+}
+
+// A number over time is what it is at that time.
+TEST(Procedural, KeyframesAreTheirValuesAtTheTime) {
+    ProceduralParams moving = ball(), still = ball();
+    moving.radius = Keyed<double>({0, 2}, {0.4, 0.8});
+    still.radius = 0.6;
+    moving.displacement = Keyed<double>({0, 2}, {0, 0.1});
+    still.displacement = 0.05;
+    moving.threshold = Keyed<double>({0, 2}, {-3, 1});
+    still.threshold = -1;
+    moving.density = Keyed<double>({0, 1}, {0, 2});
+    still.density = 2;
+    moving.edge = Keyed<double>({0, 2}, {0.1, 0.3});
+    still.edge = 0.2;
+    moving.noise.warp = Keyed<double>({0, 2}, {0, 0.2});
+    still.noise.warp = 0.1;
+    EXPECT_EQ(make(moving, 1).find("density")->component[0].values(),
+              make(still).find("density")->component[0].values());
+    EXPECT_EQ(make(moving, 0).find("density")->map().size(), 0);
+    EXPECT_NE(make(moving, 0.8).find("density")->component[0].values(),
+              make(moving, 1).find("density")->component[0].values());
+}
+
 TEST(Procedural, RefusesWhatHasNoMeaningAndStopsWhenAsked) {
     ProceduralParams p = ball();
     p.max.x = p.min.x;
