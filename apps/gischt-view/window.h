@@ -79,6 +79,7 @@ class Window {
     std::string note_;
     double noted_at_ = 0;
     Vec2d mouse_;
+    bool is_down_ = false;      // a button was, in the last frame
     std::vector<int> pressed_;  // keys since the last frame
 };
 

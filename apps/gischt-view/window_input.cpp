@@ -71,7 +71,10 @@ void Window::mouse() {
     const double height = std::max(1.0, static_cast<double>(io.DisplaySize.y));
     const Vec2d way{(mouse_.x - before.x) / height, (mouse_.y - before.y) / height};
     const bool has_way = way.x != 0 || way.y != 0;
-    const bool left = ImGui::IsMouseDown(0) && is_free;
+    // A button counts from the frame after it went down: the way there is none of its doing.
+    const bool was_down = std::exchange(is_down_, ImGui::IsAnyMouseDown());
+    const bool left = ImGui::IsMouseDown(0) && is_free && was_down,
+               other = (ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2)) && is_free && was_down;
     if (left && io.KeyShift) {
         stir(before, mouse_);
     } else if (is_stirring_) {
@@ -79,10 +82,7 @@ void Window::mouse() {
         is_stirring_ = false;
     }
     if (left && !io.KeyShift && has_way) orbit_.turn(-4 * way.x, 4 * way.y), has_moved_ = true;
-    if ((ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2)) && is_free && has_way) {
-        orbit_.pan(-way.x, way.y);
-        has_moved_ = true;
-    }
+    if (other && has_way) orbit_.pan(-way.x, way.y), has_moved_ = true;
     if (io.MouseWheel != 0 && is_free) {
         orbit_.dolly(std::pow(0.9, static_cast<double>(io.MouseWheel)));
         has_moved_ = true;
