@@ -33,3 +33,15 @@ find_library(EPOXY_LIBRARY epoxy REQUIRED)
 find_path(EPOXY_INCLUDE epoxy/gl.h REQUIRED)
 target_include_directories(gischt_epoxy SYSTEM INTERFACE ${EPOXY_INCLUDE})
 target_link_libraries(gischt_epoxy INTERFACE ${EPOXY_LIBRARY})
+
+# The window. Debian's Dear ImGui brings its back ends for GLFW and OpenGL 3 along.
+if(GISCHT_VIEW)
+    find_package(glfw3 3.3 REQUIRED)
+    add_library(gischt_imgui INTERFACE)
+    find_library(IMGUI_LIBRARY imgui REQUIRED)
+    find_library(STB_LIBRARY stb REQUIRED)  # its fonts
+    find_path(IMGUI_INCLUDE imgui/imgui.h REQUIRED)
+    # Its headers include each other without the folder.
+    target_include_directories(gischt_imgui SYSTEM INTERFACE ${IMGUI_INCLUDE} ${IMGUI_INCLUDE}/imgui)
+    target_link_libraries(gischt_imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY} ${CMAKE_DL_LIBS})
+endif()

@@ -176,6 +176,27 @@ void add_check(CLI::App& app, CommandContext& context) {
     });
 }
 
+// gischt view SCENE|FILE.vdb|CACHE
+void add_view(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<SceneOptions>();
+    CLI::App* sub = app.add_subcommand(
+        "view", "The window: orbit, play, scrub, stir, switch methods, change parameters");
+    sub->add_option("SCENE", options->target, "A scene, a .vdb or .ply file, or a cache folder")
+        ->required();
+    sub->add_option("--method", options->method,
+                    "Of the moving picture: slices, gpu_march, billboards, points");
+    sub->add_option("--preset", options->preset,
+                    "A look for any volume: smoke, fire, cloud, steam, fog");
+    sub->add_option("--cache", options->cache, "Folder of simulated frames");
+    sub->add_option("--size", options->size, "Size of the window in pixels")->type_name("WxH");
+    sub->add_option("--set", context.sets, "Override a scene parameter: a.b.c=VALUE (repeatable)")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    sub->callback([options, &context] {
+        context.action = [options, &context] { return open_window(*options, context); };
+    });
+}
+
 // gischt info FILE
 void add_info(CLI::App& app, CommandContext& context) {
     auto target = std::make_shared<std::string>();
@@ -290,6 +311,7 @@ std::optional<int> parse(int argc, char** argv, CommandContext& context) {
     add_render(app, context);
     add_flipbook(app, context);
     add_check(app, context);
+    add_view(app, context);
     add_info(app, context);
     add_merge(app, context);
     add_convert(app, context);

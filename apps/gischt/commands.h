@@ -46,6 +46,7 @@ int simulate_scene(const SceneOptions& options, CommandContext& context);
 int render_target(const SceneOptions& options, CommandContext& context);
 int make_flipbook(const FlipbookOptions& options, CommandContext& context);
 int check_scene(const SceneOptions& options, CommandContext& context);
+int open_window(const SceneOptions& options, const CommandContext& context);
 int print_info(const std::string& target, Job& job);
 int merge_films(const MergeOptions& options, const std::string& command);
 int convert_volume(const ConvertOptions& options, CommandContext& context);

@@ -232,6 +232,12 @@ ProjectionResult SmokeSolver::project(double dt, Job& job) {
     return result;
 }
 
+void SmokeSolver::set_hand(const std::vector<EmitterParams>& hand) {
+    std::vector<EmitterParams> all = params_.sources;
+    all.insert(all.end(), hand.begin(), hand.end());
+    emitters_ = Emitters(std::move(all), params_.ambient_temperature, 1 / world_.fps);
+}
+
 double SmokeSolver::longest_step() const {
     double speed = std::max(emitters_.top_speed(state_.time), solids_.top_speed());
     for (const Vec3f& s : speeds_) {

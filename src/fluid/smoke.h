@@ -44,6 +44,8 @@ class SmokeSolver {
     // The longest step that moves nothing further than `cfl` cells: air at the speed that it has,
     // or gains from the present heat and weight, sources and solids.
     double longest_step() const;
+    // Further sources from now on, in place of those of the last call: what a hand does to it.
+    void set_hand(const std::vector<EmitterParams>& hand);
     // Integral of density over the domain without what lies in solids, m^3.
     double density_integral() const;
 

@@ -13,6 +13,10 @@ class SmokeSource final : public FluidSource {
     Frame frame(int number, Job& job) override;
     FrameStatistics statistics() const override { return statistics_; }
     bool is_sequential() const override { return true; }
+    bool set_hand(const std::vector<EmitterParams>& hand) override {
+        solver_.set_hand(hand);
+        return true;
+    }
     void save_state(const std::filesystem::path& path) const override;
     void load_state(const std::filesystem::path& path) override;
     int last_frame() const override { return frame_; }

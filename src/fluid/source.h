@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "fluid/emitter.h"
 #include "fluid/solid.h"
 #include "grid/frame.h"
 
@@ -47,6 +48,10 @@ class FluidSource {
     virtual FrameStatistics statistics() const = 0;
     // True for a simulation: frames must come in order.
     virtual bool is_sequential() const = 0;
+
+    // Sources beside those of the scene, from the next step on, in place of those of the last call:
+    // what a hand does to the fluid. False where nothing can be done to it.
+    virtual bool set_hand(const std::vector<EmitterParams>&) { return false; }
 
     // Everything that a later frame depends on, in one file that appears at once; the resumed run
     // gives the same bits as the uninterrupted one. Nothing for stateless sources. load_state()

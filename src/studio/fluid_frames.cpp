@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "base/version.h"
 
@@ -78,6 +80,26 @@ void FluidFrames::ensure(int number, RunStatistics& run, Job& job) {
         compute_and_write(n, run, job);
         save_state(false);
     }
+}
+
+bool FluidFrames::stir(const std::vector<EmitterParams>& hand, Job& job) {
+    if (cache_) return false;
+    if (!source_) start(1, job);
+    const Transform placement = common_of(scene_.scene.fluids[fluid_]).placement();
+    const Transform inverse = placement.inverse();
+    std::vector<EmitterParams> own = hand;
+    for (EmitterParams& e : own) {
+        e.position = inverse.point(e.position.at(0));
+        e.radius = e.radius.at(0) * std::cbrt(std::abs(inverse.determinant()));
+        if (e.velocity) e.velocity = inverse.vector(e.velocity->at(0));
+    }
+    return source_->set_hand(own);
+}
+
+std::optional<int> FluidFrames::last_computed() const {
+    if (cache_) return std::nullopt;
+    if (!source_) return is_computed(scene_.scene.fluids[fluid_]) ? std::optional(0) : std::nullopt;
+    return source_->is_sequential() ? std::optional(source_->last_frame()) : std::nullopt;
 }
 
 void FluidFrames::finish() {

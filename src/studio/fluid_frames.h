@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "scene/world.h"
 #include "studio/cache.h"
@@ -22,6 +24,13 @@ class FluidFrames {
     std::shared_ptr<const Frame> get(int number, RunStatistics& run, Job& job);
     // Makes sure that the frame lies in the cache, without reading it.
     void ensure(int number, RunStatistics& run, Job& job);
+
+    // What a hand does to a fluid that lives in memory, in metres of the scene, from the next frame
+    // on; the frames that come after are no longer those of the scene alone. False where nothing
+    // can be done to it.
+    bool stir(const std::vector<EmitterParams>& hand, Job& job);
+    // The last frame that was computed, 0 in the beginning; nothing where any frame can be had.
+    std::optional<int> last_computed() const;
 
     // To be called after the last frame: leaves the state from which a longer sequence goes on.
     void finish();
