@@ -107,7 +107,6 @@ vec3 place_in_picture() {
 const char* const billboard_fragment = R"(
 layout(binding = 0) uniform sampler2DArray sprites;
 layout(binding = 1) uniform sampler2D opaque_depth;
-uniform int has_surfaces;
 flat in vec4 tint;
 flat in vec4 pages;
 void main() {
@@ -123,19 +122,24 @@ void main() {
 #endif
     // What hides is there or not: its opacity does not count.
     float alpha = drops_thin == 0 ? tint.a * s.a : tint.a > 0 ? s.a : 0;
-    if (has_surfaces != 0 && pages.w > 0) {
+#ifdef SURFACES
+    if (pages.w > 0) {
         float behind = texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r - at.z;
         alpha *= clamp(behind / pages.w, 0.0, 1.0);
     }
+#endif
     emit(tint.rgb * s.rgb, alpha, at.z);
 }
 )";
 
-GlProgram billboard_program(GlDevice& device, bool is_point, const SpriteSheet& sheet) {
+// llvmpipe pays for what a shader leaves out by a condition, so there is one for each case.
+GlProgram billboard_program(GlDevice& device, bool is_point, bool has_surfaces,
+                            const SpriteSheet& sheet) {
     std::string vertex = camera_glsl, fragment;
     for (const char* part : {particle_glsl, billboard_glsl, billboard_head}) vertex += part;
     vertex += is_point ? point_vertex : square_vertex;
     if (sheet.is_sequence) fragment += "#define SEQUENCE\n";
+    if (has_surfaces) fragment += "#define SURFACES\n";
     if (sheet.is_white) fragment += "#define WHITE\n";
     fragment += particle_fragment_glsl;
     fragment += is_point ? point_place : square_place;
@@ -155,8 +159,10 @@ BillboardDrawer::BillboardDrawer(GlDevice& device, const BillboardsParams& param
         sheet.texels.data());
     is_sequence_ = sheet.is_sequence;
     is_round_ = sheet.is_round;
-    squares_ = billboard_program(device, false, sheet);
-    points_ = billboard_program(device, true, sheet);
+    for (int surfaces = 0; surfaces < 2; ++surfaces) {
+        squares_[surfaces] = billboard_program(device, false, surfaces == 1, sheet);
+        points_[surfaces] = billboard_program(device, true, surfaces == 1, sheet);
+    }
 }
 
 // Two triangles for the four corners of each square.
@@ -182,7 +188,7 @@ void BillboardDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
     const double pixels = 2 * widest * params_.size * stage_.cloud().largest_in_pixels(camera);
     const bool is_point = params_.facing == BillboardFacing::Camera &&
                           pixels <= static_cast<double>(device_.limits().point_size);
-    const GlProgram& program = is_point ? points_ : squares_;
+    const GlProgram& program = (is_point ? points_ : squares_)[opaque.has_surfaces() ? 1 : 0];
     program.use();
     stage_.set(program, camera, order);
     program.set("facing", static_cast<int>(params_.facing));
@@ -193,7 +199,6 @@ void BillboardDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
     program.set("pictures", static_cast<float>(sprites_.spec().size.z));
     program.set("is_sequence", is_sequence_ ? 1 : 0);
     program.set("soft_fade", static_cast<float>(params_.soft_fade));
-    program.set("has_surfaces", opaque.has_surfaces() ? 1 : 0);
     sprites_.bind(0);
     opaque.depth().bind(1);
     GlDraw draw = stage_.draw(order.as_depth);

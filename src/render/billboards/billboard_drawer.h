@@ -19,7 +19,7 @@ class BillboardDrawer : public SceneDrawer {
   private:
     GlDevice& device_;
     BillboardsParams params_;
-    GlProgram squares_, points_;
+    GlProgram squares_[2], points_[2];  // without and with surfaces to fade before
     ParticleStage stage_;
     GlTexture sprites_;
     GlBuffer corners_;

@@ -67,7 +67,7 @@ vec3 extinction_here() { return corner_extinction; }
 // the part before a surface counts. Within it source and extinction are constant: eq. 19.
 const char* const slab_fragment = R"(
 layout(binding = 2) uniform sampler2D opaque_depth;
-uniform int axis, as_depth, has_surfaces;
+uniform int axis, as_depth;
 uniform float spacing;
 
 // Metres, and the depth along the view axis.
@@ -80,10 +80,10 @@ vec2 slab() {
         ds = spacing / max(abs(to[axis]) * per_length, 1e-4);
         cosine = z * per_length;
     }
-    if (has_surfaces != 0) {
-        float behind = texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r - z;
-        ds *= clamp(behind / (ds * cosine) + 0.5, 0.0, 1.0);
-    }
+#ifdef SURFACES
+    float behind = texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r - z;
+    ds *= clamp(behind / (ds * cosine) + 0.5, 0.0, 1.0);
+#endif
     return vec2(ds, z);
 }
 )";
@@ -126,13 +126,16 @@ out vec4 result;
 void main() { result = texelFetch(stack, ivec2(gl_FragCoord.xy), 0); }
 )";
 
-GlProgram slice_program(GlDevice& device, bool is_mesh, bool is_grey) {
-    const std::string camera = camera_glsl;
+// llvmpipe pays for what a shader leaves out by a condition, so there is one for each case.
+GlProgram slice_program(GlDevice& device, bool is_mesh, bool is_grey, bool has_surfaces) {
+    std::string vertex = camera_glsl, fragment = has_surfaces ? "#define SURFACES\n" : "";
+    vertex += is_mesh ? mesh_vertex : slice_vertex;
+    for (const char* part : {camera_glsl, is_mesh ? values_of_corners : values_of_texture,
+                             slab_fragment, is_grey ? grey_fragment : colored_fragment}) {
+        fragment += part;
+    }
     return GlProgram(device, is_mesh ? "slice_meshes" : "slices",
-                     {{GlStageKind::Vertex, camera + (is_mesh ? mesh_vertex : slice_vertex)},
-                      {GlStageKind::Fragment,
-                       camera + (is_mesh ? values_of_corners : values_of_texture) + slab_fragment +
-                           (is_grey ? grey_fragment : colored_fragment)}});
+                     {{GlStageKind::Vertex, vertex}, {GlStageKind::Fragment, fragment}});
 }
 
 }  // namespace
@@ -140,11 +143,15 @@ GlProgram slice_program(GlDevice& device, bool is_mesh, bool is_grey) {
 SliceDrawer::SliceDrawer(GlDevice& device, const SlicesParams& params)
     : device_(device),
       params_(params),
-      grey_(slice_program(device, params.sampling == SliceSampling::Vertex, true)),
-      colored_(slice_program(device, params.sampling == SliceSampling::Vertex, false)),
       mix_(device, "slice_mix",
            {{GlStageKind::Vertex, whole_picture_glsl}, {GlStageKind::Fragment, mix_source}}),
-      volume_(device) {}
+      volume_(device) {
+    const bool is_mesh = params.sampling == SliceSampling::Vertex;
+    for (int surfaces = 0; surfaces < 2; ++surfaces) {
+        grey_[surfaces] = slice_program(device, is_mesh, true, surfaces == 1);
+        colored_[surfaces] = slice_program(device, is_mesh, false, surfaces == 1);
+    }
+}
 
 void SliceDrawer::upload(const View& view, Job& job) {
     if (grid_ && grid_->holds_for(view)) return;
@@ -189,7 +196,8 @@ void SliceDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
 void SliceDrawer::draw_stack(int axis, const GlCamera& camera, const DrawOrder& order,
                              const OpaqueLayer& opaque) {
     const bool is_mesh = params_.sampling == SliceSampling::Vertex;
-    const GlProgram& program = volume_.is_grey() ? grey_ : colored_;
+    const GlProgram& program =
+        (volume_.is_grey() ? grey_ : colored_)[opaque.has_surfaces() ? 1 : 0];
     const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     const Vec3d half = 0.5 * volume_.box().size(), cell = half * 2.0 / Vec3d(volume_.cells());
     const int layers = volume_.cells()[axis];
@@ -208,7 +216,6 @@ void SliceDrawer::draw_stack(int axis, const GlCamera& camera, const DrawOrder& 
     program.set("v_axis", v);
     program.set("is_colored", volume_.is_grey() ? 0 : 1);
     program.set("as_depth", order.as_depth ? 1 : 0);
-    program.set("has_surfaces", opaque.has_surfaces() ? 1 : 0);
     program.set("spacing", static_cast<float>(2 * half[axis] / count));
 
     // Parallel rays see all slices from one side.

@@ -29,7 +29,7 @@ class SliceDrawer : public SceneDrawer {
 
     GlDevice& device_;
     SlicesParams params_;
-    GlProgram grey_, colored_, mix_;
+    GlProgram grey_[2], colored_[2], mix_;  // without and with surfaces that cut slices
     LitVolume volume_;
     std::optional<LitGrid> grid_;
     std::optional<GlFramebuffer> scratch_;
