@@ -169,6 +169,10 @@ class Work(CliCase):
         # A second run computes nothing again.
         self.run_gischt("run", "plume", *SMALL, "--frames", "1-3", "-o", "p", "--stats", "s.json")
         self.assertEqual(json.loads((self.dir / "s.json").read_text())["frames"], [])
+        # Another look at the cache leaves its scene alone.
+        scene = (self.dir / "p/scene.toml").read_text()
+        self.run_gischt("render", "p", "--exposure", "2", "-o", "bright.png")
+        self.assertEqual((self.dir / "p/scene.toml").read_text(), scene)
         # Another simulation may not mix with it.
         self.run_gischt("run", "plume", *SMALL, "--set", "seed=5", "--frames", "1-3", "-o", "p", status=2)
 

@@ -190,7 +190,7 @@ void Stage::begin_fluids() {
     fluids_.clear();
     motion_ = scene_;
     cache_.reset();
-    if (folder_) cache_.emplace(*folder_, *motion_, false);
+    if (folder_) cache_.emplace(*folder_, *motion_, false, true);
     for (std::size_t i = 0; i < motion_->scene.fluids.size(); ++i) {
         fluids_.emplace_back(*motion_, i, cache_ ? &*cache_ : nullptr);
     }

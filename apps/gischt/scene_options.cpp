@@ -115,6 +115,7 @@ ResolvedOptions resolve(const SceneOptions& options, CommandContext& context) {
             load_scene((fs::path(options.target) / "scene.toml").string(), options.preset, sets);
         r.scene.name = cache_name(options.target);
         r.order.cache = options.target;
+        r.order.keeps_scene = true;
         r.is_cache = true;
     } else {
         r.scene = load_scene(options.target, options.preset, sets);

@@ -64,7 +64,7 @@ static void remove_frames(const fs::path& folder, const std::vector<std::string>
     }
 }
 
-Cache::Cache(fs::path folder, const LoadedScene& scene, bool restart)
+Cache::Cache(fs::path folder, const LoadedScene& scene, bool restart, bool keeps_scene)
     : folder_(std::move(folder)), names_(fluid_names(scene.scene)) {
     std::error_code error;
     fs::create_directories(folder_, error);
@@ -78,6 +78,8 @@ Cache::Cache(fs::path folder, const LoadedScene& scene, bool restart)
         } else if (motion != scene.motion_hash) {
             throw Error(ErrorKind::Usage, folder_.string(), "holds frames of another simulation",
                         "give another folder, or --restart to replace them");
+        } else if (keeps_scene) {
+            return;
         }
     }
     AtomicFile file((folder_ / "scene.toml").string());

@@ -15,8 +15,10 @@ class Cache {
   public:
     // Opens or makes the folder. Frames of the same motion are kept and used; `restart` removes
     // them. Throws Error{Usage} when the folder holds frames of another motion, Error{Resource}
-    // when it cannot be written.
-    Cache(std::filesystem::path folder, const LoadedScene& scene, bool restart);
+    // when it cannot be written. With `keeps_scene` the scene that lies in it stays: who looks at a
+    // cache in another light does not change it.
+    Cache(std::filesystem::path folder, const LoadedScene& scene, bool restart,
+          bool keeps_scene = false);
 
     const std::filesystem::path& folder() const { return folder_; }
     std::filesystem::path vdb(std::size_t fluid, int frame) const;

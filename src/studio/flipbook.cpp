@@ -96,7 +96,7 @@ class FrameReader {
   public:
     FrameReader(const LoadedScene& scene, const FlipbookOrder& order, RunStatistics& run)
         : run_(run) {
-        if (order.cache) cache_.emplace(*order.cache, scene, order.restart);
+        if (order.cache) cache_.emplace(*order.cache, scene, order.restart, order.keeps_scene);
         for (std::size_t i = 0; i < scene.scene.fluids.size(); ++i)
             fluids_.emplace_back(scene, i, cache_ ? &*cache_ : nullptr);
     }

@@ -25,7 +25,7 @@ std::vector<FluidFrames> open_fluids(const LoadedScene& scene, const Cache* cach
 
 std::optional<Cache> open_cache(const LoadedScene& scene, const Order& order) {
     if (!order.cache) return std::nullopt;
-    return Cache(*order.cache, scene, order.restart);
+    return Cache(*order.cache, scene, order.restart, order.keeps_scene);
 }
 
 bool is_movie(const std::string& path) {

@@ -17,6 +17,7 @@ struct Order {
     // Patterns of pictures (.png, .exr, .hdr), states to go on with (.film) and movies (.mp4).
     std::vector<std::string> outputs;
     std::optional<std::filesystem::path> cache;
+    bool keeps_scene = false;  // the scene of that cache stays as it is
     bool restart = false;
     double noise = 0, time_limit = 0;  // as in RenderSettings; the time counts per picture
     int first_sample = 0;

@@ -61,7 +61,7 @@ class Formula {
     Content at(std::span<const int> parts, const Vec3d& x) const {
         const EnvelopeSample shape = envelope_.at(parts, x);
         const double throw_ = displacement_ * shape.hold;
-        if (shape.depth + outwards(throw_) <= -band_) return {.surface = static_cast<float>(band_)};
+        if (shape.depth + outwards(throw_) <= -band_) return {0, 0, static_cast<float>(band_), {}};
 
         const double n = noise(x, shape.depth, throw_);
         const double depth = shape.depth + throw_ * n;
