@@ -103,7 +103,11 @@ class View(unittest.TestCase):
             self.until(lambda: screen.title("gischt: plume"), "the window")
             screen.do("windowfocus", screen.title("gischt: plume"))
             screen.do("mousemove", 600, 250)
-            screen.do("key", "f")  # no final picture for now
+
+            def shown():
+                """The frame of a picture that is saved now."""
+                text = subprocess.run([GISCHT, "info", picture()], capture_output=True, text=True, check=False).stdout
+                return int(re.search(r"frame = (\d+)", text).group(1))
 
             def picture():
                 """Saves one that shows what was done so far."""
@@ -112,13 +116,14 @@ class View(unittest.TestCase):
                 self.assertTrue(saved.with_suffix(".png").exists())  # written before
                 return str(saved)
 
-            first = picture()
+            self.assertEqual(shown(), 1)
+            time.sleep(3)  # the final picture grows
             screen.do("key", "Right")  # a step forward
-            time.sleep(2)
+            self.until(lambda: shown() == 2, "frame 2")
+            time.sleep(3)
             screen.do("key", "space")  # play
-            time.sleep(6)
-            playing = picture()
-            self.assertNotEqual(self.differ(first, playing)[1], self.differ(first, first)[1])
+            self.until(lambda: shown() > 4, "frame 5")
+            screen.do("key", "f")  # no final picture for now
             screen.keep("playing.png")
 
             screen.do("mousemove", 480, 430)

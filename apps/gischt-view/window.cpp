@@ -59,9 +59,10 @@ Window::Window(Stage& stage, Artist& artist, WindowOptions options)
     });
     // Kept here, as a key that goes down and up between two frames would be lost otherwise. Dear
     // ImGui calls what was there before it.
-    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int with) {
         if (action == GLFW_RELEASE) return;
-        static_cast<Window*>(glfwGetWindowUserPointer(w))->pressed_.push_back(key);
+        static_cast<Window*>(glfwGetWindowUserPointer(w))
+            ->pressed_.push_back({key, (with & GLFW_MOD_CONTROL) != 0});
     });
     device_ = device_of_current_context();
     ImGui::CreateContext();
@@ -171,6 +172,7 @@ void Window::ask_for_picture() {
     if (is_playing && is_final_asked_) {  // leaves the processor to the simulation
         artist_.rest();
         is_final_asked_ = false;
+        wish_ = 0;
     }
     if (has_moved_) {
         // Wait for the picture under way: a new wish would only push it aside.

@@ -36,7 +36,7 @@ class Window {
     void frame();
     void take_news();
     void keys();
-    void act_on(int key);
+    void act_on(int key, bool with_control);
     void mouse();
     void stir(Vec2d from, Vec2d to);
     void ask_for_picture();
@@ -45,6 +45,7 @@ class Window {
     void time_line();
     void status();
     void fly_home();
+    void write_picture(const std::string& name) const;
     void save_picture();
     void save_scene();
     void record();
@@ -79,8 +80,12 @@ class Window {
     std::string note_;
     double noted_at_ = 0;
     Vec2d mouse_;
-    bool is_down_ = false;      // a button was, in the last frame
-    std::vector<int> pressed_;  // keys since the last frame
+    bool is_down_ = false;  // a button was, in the last frame
+    struct Key {
+        int key = 0;
+        bool with_control = false;
+    };
+    std::vector<Key> pressed_;  // since the last frame
 };
 
 }  // namespace gischt

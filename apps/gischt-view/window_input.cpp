@@ -22,12 +22,12 @@ namespace gischt {
 namespace fs = std::filesystem;
 
 void Window::keys() {
-    const std::vector<int> pressed = std::exchange(pressed_, {});
+    const std::vector<Key> pressed = std::exchange(pressed_, {});
     if (ImGui::GetIO().WantTextInput || !shot_) return;
-    for (const int key : pressed) act_on(key);
+    for (const Key& k : pressed) act_on(k.key, k.with_control);
 }
 
-void Window::act_on(int key) {
+void Window::act_on(int key, bool with_control) {
     constexpr std::array<const char*, 4> methods{"slices", "gpu_march", "billboards", "points"};
     const int first = shot_->scene->scene.frames.x;
     switch (key) {
@@ -42,7 +42,7 @@ void Window::act_on(int key) {
         case GLFW_KEY_H:
             return fly_home();
         case GLFW_KEY_S:
-            return ImGui::GetIO().KeyCtrl ? save_scene() : save_picture();
+            return with_control ? save_scene() : save_picture();
         case GLFW_KEY_TAB:
             is_panel_open_ = !is_panel_open_;
             break;
@@ -206,14 +206,24 @@ std::string Window::free_name(const std::string& extension) const {
     }
 }
 
+// The picture as a file, with what it shows.
+void Window::write_picture(const std::string& name) const {
+    const Scene& scene = shot_->scene->scene;
+    Image image = picture_->image;
+    image.metadata.set("scene", shot_->scene->name);
+    image.metadata.set("method", picture_->method);
+    image.metadata.set("frame", std::to_string(picture_->frame));
+    WriteOptions options;
+    options.display = {scene.film.tone, scene.film.exposure, true, false};
+    write_image(name, image, options);
+}
+
 void Window::save_picture() {
     if (!picture_) return;
     try {
-        WriteOptions options;
-        options.display = {shot_->scene->scene.film.tone, shot_->scene->scene.film.exposure};
         const std::string name = free_name(".png");
-        write_image(name, picture_->image, options);
-        write_image(fs::path(name).replace_extension(".exr").string(), picture_->image, options);
+        write_picture(name);
+        write_picture(fs::path(name).replace_extension(".exr").string());
         note("saved " + name + " and .exr");
     } catch (const Error& e) {
         note(e.what());
