@@ -52,6 +52,7 @@ std::vector<NamedParams> alternatives() {
         p.splits = 3;
         p.shadow = Shadow::Exact;
     });
+    add("3 paths from surfaces", {}, [](PathParams& p) { p.surface_splits = 3; });
     add("3 points, 8 splits, residual", {}, [](PathParams& p) {
         p.points = 3;
         p.splits = 8;

@@ -24,10 +24,11 @@ enum class CameraSegment {
 struct PathParams {
     TransmittanceEstimator shadow = TransmittanceEstimator::Cached;
     CameraSegment camera = CameraSegment::Profile;
-    int points = 8;       // of a camera ray with a profile, at which direct light is taken
-    int splits = 8;       // of them from which paths go on
-    int equiangular = 4;  // more points of such a ray, for lights at finite places alone
-    bool bridge = true;   // suns are reached through chains of turns that end in their direction
+    int points = 8;          // of a camera ray with a profile, at which direct light is taken
+    int splits = 8;          // of them from which paths go on
+    int surface_splits = 1;  // paths that go on from an evenly scattering surface that it meets
+    int equiangular = 4;     // more points of such a ray, for lights at finite places alone
+    bool bridge = true;      // suns are reached through chains of turns that end in their direction
     double correction = 0.1;  // chance that a cached transmittance is made exact
     double roulette = 0.1;    // paths weaker than this share of their start may end at random
     std::int64_t cache_nodes = 40'000'000;  // of one grid towards a sun

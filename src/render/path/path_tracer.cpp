@@ -85,13 +85,32 @@ void PathTracer::see(Leg leg, const PixelSampler& sampler) {
             return;
         }
         if (!passes(*hit)) {
-            RandomStream random = stream_of(sampler, 1);
             from_surface(leg, *hit, Vec3f(1));
-            if (scatter_at_surface(leg, *hit, random)) follow(leg, random);
-            return;
+            return see_surface(leg, *hit, sampler);
         }
         cross(*hit);
         leg.ray = leaving_ray(*hit, leg.ray.direction);
+    }
+}
+
+// Paths go on from the surface that the camera sees, several where it scatters evenly.
+void PathTracer::see_surface(const Leg& leg, const SurfaceHit& hit, const PixelSampler& sampler) {
+    const bool is_even = scene_.view.surfaces.info(hit.surface).material == MaterialKind::Lambert;
+    const int splits = is_even ? scene_.params.surface_splits : 1;
+    const std::optional<InteriorStack> inside = inside_;
+    for (int k = 0; k < splits; ++k) {
+        RandomStream random = stream_of(
+            splits == 1
+                ? sampler
+                : sampler.part(static_cast<std::uint32_t>(splits), static_cast<std::uint32_t>(k)),
+            1);
+        Leg next = leg;
+        next.weight.weight *= 1 / static_cast<float>(splits);
+        next.start /= static_cast<float>(splits);
+        if (scatter_at_surface(next, hit, random)) follow(next, random);
+        if (splits == 1) return;
+        inside_ = inside;
+        take_media();
     }
 }
 

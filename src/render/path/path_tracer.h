@@ -85,6 +85,7 @@ class PathTracer {
     enum class End { Infinity, Surface, Collision };
 
     void see(Leg leg, const PixelSampler& sampler);
+    void see_surface(const Leg& leg, const SurfaceHit& hit, const PixelSampler& sampler);
     void see_through(const Leg& leg, const PixelSampler& sampler);
     float profile_share(double t) const;
     void see_places(const Leg& leg, const PixelSampler& sampler);
