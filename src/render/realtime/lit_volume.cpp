@@ -6,105 +6,12 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "render/realtime/lit_volume_glsl.h"
 
 namespace gischt {
 namespace {
 
 constexpr int phase_steps = 1024;  // of the table over the angle
-
-const char* const start_source = R"(
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Blocks { ivec4 block[]; };
-layout(binding = 0, rgba32f) uniform image3D source;
-layout(binding = 1) uniform sampler3D density;
-layout(binding = 2) uniform sampler3D tint;
-layout(binding = 3) uniform sampler3D emission;
-layout(binding = 4) uniform sampler3D sky;
-uniform ivec3 cells;
-uniform int block_count, is_first, has_tint, has_emission, has_sky;
-uniform vec3 scattering;
-uniform float extinction;
-
-// What a medium takes, glows, and scatters of the sky.
-void start_cell(ivec3 at) {
-    vec4 sum = vec4(0);
-    if (is_first == 0) sum = imageLoad(source, at);
-    else if (has_emission != 0) sum.rgb = texelFetch(emission, at, 0).rgb;
-    float d = texelFetch(density, at, 0).r;
-    sum.a += d * extinction;
-    if (d > 0 && has_sky != 0) {
-        vec3 s = d * scattering;
-        if (has_tint != 0) s *= texelFetch(tint, at, 0).rgb;
-        sum.rgb += s * texture(sky, (vec3(at) + 0.5) / vec3(cells)).rgb;
-    }
-    imageStore(source, at, sum);
-}
-// A group does one block, each of its invocations a column: setting up an invocation costs llvmpipe
-// more than a cell does.
-void main() {
-    uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (b >= block_count) return;
-    ivec3 at = block[b].xyz * 8 + ivec3(gl_LocalInvocationID.xy, 0);
-    if (any(greaterThanEqual(at, cells))) return;
-    int end = min(at.z + 8, cells.z);
-    for (; at.z < end; ++at.z) start_cell(at);
-}
-)";
-
-const char* const scatter_source = R"(
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer Blocks { ivec4 block[]; };
-layout(binding = 0, rgba32f) uniform image3D source;
-layout(binding = 1) uniform sampler3D density;
-layout(binding = 2) uniform sampler3D tint;
-layout(binding = 5) uniform sampler3D light;
-layout(binding = 6) uniform sampler2D phase;
-uniform ivec3 cells;
-uniform int block_count, has_tint, is_colored, is_infinite, has_arrival, is_even, octaves, first_row, rows;
-uniform vec3 scattering, light_color, light_place, eye, forward, low, cell;
-uniform int is_perspective;
-uniform vec2 octave[17];  // attenuation, contribution
-
-float phase_of(int o, float c) {
-    float u = is_even != 0 ? 0.5 : acos(clamp(c, -1.0, 1.0)) / 3.14159265;
-    float steps = float(textureSize(phase, 0).x);
-    return texture(phase, vec2((u * (steps - 1) + 0.5) / steps,
-                               (float(first_row + o) + 0.5) / float(rows))).r;
-}
-
-// What a medium scatters of one light towards the camera.
-void scatter_cell(ivec3 at) {
-    float d = texelFetch(density, at, 0).r;
-    if (d <= 0) return;
-    vec4 l = texelFetch(light, at, 0);
-    float arrival = has_arrival == 0 ? 1 : is_colored != 0 ? l.a : l.g;
-    if (arrival <= 0) return;
-    vec3 depth = is_colored != 0 ? l.rgb : l.rrr;
-    float c = 0;
-    if (is_even == 0) {
-        vec3 p = low + (vec3(at) + 0.5) * cell;
-        vec3 along = is_perspective != 0 ? normalize(p - eye) : forward;
-        c = dot(along, is_infinite != 0 ? light_place : normalize(light_place - p));
-    }
-    vec3 sum = vec3(0);
-    for (int o = 0; o < octaves; ++o) {
-        sum += octave[o].y * phase_of(o, c) * exp(-octave[o].x * depth);
-    }
-    vec3 s = d * scattering;
-    if (has_tint != 0) s *= texelFetch(tint, at, 0).rgb;
-    vec4 before = imageLoad(source, at);
-    before.rgb += s * light_color * arrival * sum;
-    imageStore(source, at, before);
-}
-void main() {
-    uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (b >= block_count) return;
-    ivec3 at = block[b].xyz * 8 + ivec3(gl_LocalInvocationID.xy, 0);
-    if (any(greaterThanEqual(at, cells))) return;
-    int end = min(at.z + 8, cells.z);
-    for (; at.z < end; ++at.z) scatter_cell(at);
-}
-)";
 
 // Vectors as four floats, the last one 0.
 std::vector<float> padded(const std::vector<Vec3f>& values) {
@@ -131,11 +38,13 @@ GlDraw over_draw(bool is_grey) {
 
 LitVolume::LitVolume(GlDevice& device)
     : device_(device),
-      start_(device, "lit_volume_start", {{GlStageKind::Compute, start_source}}),
-      scatter_(device, "lit_volume_scatter", {{GlStageKind::Compute, scatter_source}}) {}
+      start_(device, "lit_volume_start", {{GlStageKind::Compute, start_cells_glsl}}),
+      scatter_(device, "lit_volume_scatter", {{GlStageKind::Compute, scatter_cells_glsl}}) {}
 
-void LitVolume::upload(const LitGrid& grid) {
+void LitVolume::upload(const LitGrid& grid, std::optional<std::size_t> apart) {
     shaded_.reset();
+    apart_ = apart;
+    lit_ = GlTexture();
     media_.clear();
     lights_.clear();
     sky_.clear();
@@ -149,6 +58,10 @@ void LitVolume::upload(const LitGrid& grid) {
     // Empty blocks are never written.
     source_ = GlTexture(device_, volume_spec(GlFormat::Rgba32F, cells_),
                         std::vector<float>(4 * volume(cells_)).data());
+    if (apart_) {
+        lit_ = GlTexture(device_, volume_spec(GlFormat::Rgba32F, cells_),
+                         std::vector<float>(4 * volume(cells_)).data());
+    }
     set_phase(grid);
     upload_media(grid);
     upload_lights(grid);
@@ -285,18 +198,18 @@ void LitVolume::shade(const GlCamera& camera) {
         return;
     }
     shaded_ = camera;
-    source_.bind_image(0);
     device_.bind_storage(0, dense_blocks_.id());
     for (std::size_t m = 0; m < media_.size(); ++m) {
         media_[m].density.bind(1);
         if (!media_[m].color.is_empty()) media_[m].color.bind(2);
         start_medium(m);
-        scatter_medium(media_[m], camera);
+        scatter_medium(m, camera);
     }
 }
 
 void LitVolume::start_medium(std::size_t m) {
     const GridMedium& constants = media_[m].constants;
+    source_.bind_image(0);
     start_.use();
     start_.set("cells", cells_);
     start_.set("block_count", block_count_);
@@ -312,7 +225,8 @@ void LitVolume::start_medium(std::size_t m) {
     device_.barrier();
 }
 
-void LitVolume::scatter_medium(const Medium& medium, const GlCamera& camera) {
+void LitVolume::scatter_medium(std::size_t m, const GlCamera& camera) {
+    const Medium& medium = media_[m];
     scatter_.use();
     camera.set(scatter_);
     scatter_.set("cells", cells_);
@@ -332,9 +246,14 @@ void LitVolume::scatter_medium(const Medium& medium, const GlCamera& camera) {
                      Vec2f{octave.attenuation, octave.contribution});
     }
     phase_.bind(6);
-    for (const Light& light : lights_) {
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const Light& light = lights_[i];
         if (max_component(light.color) <= 0) continue;
+        const bool is_apart = apart_ == i;
+        (is_apart ? lit_ : source_).bind_image(0);
         light.depth.bind(5);
+        scatter_.set("is_apart", is_apart ? 1 : 0);
+        scatter_.set("is_first", is_apart && m == 0 ? 1 : 0);
         scatter_.set("is_infinite", light.is_infinite ? 1 : 0);
         scatter_.set("has_arrival", light.is_everywhere ? 0 : 1);
         scatter_.set("light_color", light.color);
@@ -348,7 +267,8 @@ std::size_t LitVolume::bytes() const {
     const auto of = [](const GlTexture& t) {
         return t.is_empty() ? 0 : volume(t.spec().size) * texel_bytes(t.spec().format);
     };
-    std::size_t sum = of(source_) + of(extinction_) + of(blocks_) + of(emission_) + of(phase_);
+    std::size_t sum =
+        of(source_) + of(extinction_) + of(blocks_) + of(emission_) + of(phase_) + of(lit_);
     for (const Medium& m : media_) sum += of(m.density) + of(m.color);
     for (const Light& l : lights_) sum += of(l.depth);
     for (const GlTexture& s : sky_) sum += of(s);

@@ -21,7 +21,9 @@ class LitVolume {
   public:
     explicit LitVolume(GlDevice& device);
 
-    void upload(const LitGrid& grid);
+    // What is scattered of the light `apart`, an index of grid.lights, goes to lit() in place of
+    // source().
+    void upload(const LitGrid& grid, std::optional<std::size_t> apart = {});
     // Does nothing when the source that is there holds for this camera.
     void shade(const GlCamera& camera);
 
@@ -31,6 +33,9 @@ class LitVolume {
     const GlTexture& source() const { return source_; }
     // Of three channels; only where not is_grey().
     const GlTexture& extinction() const { return extinction_; }
+    // What every cell adds of the light that is kept apart, per share of it that the media on its
+    // way let through, W/(m^3 sr). Only where there is such a light.
+    const GlTexture& lit() const { return lit_; }
     // The largest extinction of each block of cells with the cells that touch it; 0 only where
     // there is nothing to see.
     const GlTexture& blocks() const { return blocks_; }
@@ -59,7 +64,7 @@ class LitVolume {
     void upload_blocks(const LitGrid& grid);
     void set_phase(const LitGrid& grid);
     void start_medium(std::size_t m);
-    void scatter_medium(const Medium& medium, const GlCamera& camera);
+    void scatter_medium(std::size_t m, const GlCamera& camera);
 
     GlDevice& device_;
     GlProgram start_, scatter_;
@@ -68,12 +73,13 @@ class LitVolume {
     std::vector<Medium> media_;
     std::vector<Light> lights_;
     std::vector<GlTexture> sky_;  // by medium
-    GlTexture emission_, phase_, source_, extinction_, blocks_;
+    GlTexture emission_, phase_, source_, extinction_, blocks_, lit_;
     GlBuffer dense_blocks_;  // coordinates of the blocks that hold something
     int block_count_ = 0;
     Vec3i groups_;
     bool is_even_ = true;  // all phase functions
     int phase_rows_ = 0;
+    std::optional<std::size_t> apart_;
     std::optional<GlCamera> shaded_;
 };
 

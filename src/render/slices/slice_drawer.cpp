@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/slices/slice_glsl.h"
 #include "render/slices/slice_stack.h"
 
 namespace gischt {
@@ -63,33 +64,9 @@ vec4 source_here() { return corner_source; }
 vec3 extinction_here() { return corner_extinction; }
 )";
 
-// A slice stands for a slab: along the ray of a pixel it is spacing / cosine long, of which only
-// the part before a surface counts. Within it source and extinction are constant: eq. 19.
-const char* const slab_fragment = R"(
-layout(binding = 2) uniform sampler2D opaque_depth;
-uniform int axis, as_depth;
-uniform float spacing;
-
-// Metres, and the depth along the view axis.
-vec2 slab() {
-    vec3 to = place - eye;
-    float z = dot(to, forward), cosine = 1;
-    float ds = spacing / max(abs(forward[axis]), 1e-4);
-    if (is_perspective != 0) {
-        float per_length = inversesqrt(dot(to, to));
-        ds = spacing / max(abs(to[axis]) * per_length, 1e-4);
-        cosine = z * per_length;
-    }
-#ifdef SURFACES
-    float behind = texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r - z;
-    ds *= clamp(behind / (ds * cosine) + 0.5, 0.0, 1.0);
-#endif
-    return vec2(ds, z);
-}
-)";
-
 // Where all channels lose the same: one factor, the coverage.
 const char* const grey_fragment = R"(
+uniform int as_depth;
 out vec4 result;
 void main() {
     vec4 s = source_here();
@@ -106,6 +83,7 @@ void main() {
 const char* const colored_fragment = R"(
 layout(location = 0, index = 0) out vec4 result;
 layout(location = 0, index = 1) out vec4 through;
+uniform int as_depth;
 void main() {
     vec4 s = source_here();
     if (s == vec4(0)) discard;
@@ -131,7 +109,7 @@ GlProgram slice_program(GlDevice& device, bool is_mesh, bool is_grey, bool has_s
     std::string vertex = camera_glsl, fragment = has_surfaces ? "#define SURFACES\n" : "";
     vertex += is_mesh ? mesh_vertex : slice_vertex;
     for (const char* part : {camera_glsl, is_mesh ? values_of_corners : values_of_texture,
-                             slab_fragment, is_grey ? grey_fragment : colored_fragment}) {
+                             slab_glsl, is_grey ? grey_fragment : colored_fragment}) {
         fragment += part;
     }
     return GlProgram(device, is_mesh ? "slice_meshes" : "slices",
@@ -146,6 +124,10 @@ SliceDrawer::SliceDrawer(GlDevice& device, const SlicesParams& params)
       mix_(device, "slice_mix",
            {{GlStageKind::Vertex, whole_picture_glsl}, {GlStageKind::Fragment, mix_source}}),
       volume_(device) {
+    if (params.kind == SliceKind::HalfAngle) {
+        half_angle_ = std::make_unique<HalfAngleSlices>(device, params);
+        return;
+    }
     const bool is_mesh = params.sampling == SliceSampling::Vertex;
     for (int surfaces = 0; surfaces < 2; ++surfaces) {
         grey_[surfaces] = slice_program(device, is_mesh, true, surfaces == 1);
@@ -155,8 +137,14 @@ SliceDrawer::SliceDrawer(GlDevice& device, const SlicesParams& params)
 
 void SliceDrawer::upload(const View& view, Job& job) {
     if (grid_ && grid_->holds_for(view)) return;
-    grid_.emplace(view, params_.grid, "slices", job);
-    volume_.upload(*grid_);
+    grid_.reset();
+    LitGrid grid(view, params_.grid, "slices", job);
+    if (half_angle_ && !grid.is_empty()) {
+        volume_.upload(grid, half_angle_->choose_light(grid));
+    } else {
+        volume_.upload(grid);
+    }
+    grid_ = std::move(grid);
 }
 
 void SliceDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
@@ -166,6 +154,10 @@ void SliceDrawer::draw(const DrawOrder& order, const OpaqueLayer& opaque,
     opaque.draw(camera, order.as_depth);
     if (volume_.is_empty()) return;
     volume_.shade(camera);
+    if (half_angle_) {
+        half_angle_->draw(volume_, camera, order, opaque, target);
+        return;
+    }
 
     // The view direction is that to the middle of the box: at the edges of a wide picture the
     // camera's own axis says little about the rays there.
@@ -212,6 +204,9 @@ void SliceDrawer::draw_stack(int axis, const GlCamera& camera, const DrawOrder& 
     program.set("high", Vec3f(half));
     program.set("cell", Vec3f(cell));
     program.set("axis", axis);
+    Vec3f across;
+    across[axis] = 1;
+    program.set("across", across);
     program.set("u_axis", u);
     program.set("v_axis", v);
     program.set("is_colored", volume_.is_grey() ? 0 : 1);

@@ -6,14 +6,14 @@
 
 #include "render/realtime/drawer.h"
 #include "render/realtime/lit_volume.h"
-#include "render/slices/slices_params.h"
+#include "render/slices/half_angle.h"
 
 namespace gischt {
 
-// Draws media as three stacks of slices.
+// Draws media as three stacks of slices, or as slices across the half vector.
 class SliceDrawer : public SceneDrawer {
   public:
-    // The device must outlive it.
+    // The device must outlive it. Throws Error{Usage} for parameters that contradict each other.
     SliceDrawer(GlDevice& device, const SlicesParams& params);
 
     void upload(const View& view, Job& job) override;
@@ -31,6 +31,7 @@ class SliceDrawer : public SceneDrawer {
     SlicesParams params_;
     GlProgram grey_[2], colored_[2], mix_;  // without and with surfaces that cut slices
     LitVolume volume_;
+    std::unique_ptr<HalfAngleSlices> half_angle_;  // only of that kind
     std::optional<LitGrid> grid_;
     std::optional<GlFramebuffer> scratch_;
 };

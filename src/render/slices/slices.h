@@ -11,7 +11,8 @@ namespace gischt {
 
 // Stacks of slices across the three axes (Dobashi et al. 2000 and others before): the stack whose
 // axis is nearest to the view direction is drawn back to front, each slice standing for the slab
-// around it. Light reaches each cell of the grid once, before.
+// around it. Light reaches each cell of the grid once, before. Or slices across the half vector
+// between light and view (render/slices/half_angle.h).
 std::unique_ptr<RenderMethod> make_slices_method(const SlicesParams& params);
 
 inline constexpr std::string_view slices_simulates =

@@ -6,8 +6,15 @@ namespace gischt {
 const Table<SlicesParams>& slices_table() {
     using P = SlicesParams;
     static const Table<P> table =
-        Table<P>("slices", "Three stacks of slices through the media, drawn back to front")
+        Table<P>("slices", "Slices through the media, drawn one after the other")
             .flat(&P::grid, grid_params_table())
+            .choice("kind", &P::kind,
+                    {{"axis", SliceKind::Axis,
+                      "across x, y and z: the stack nearest to the view, light by the grid"},
+                     {"half_angle", SliceKind::HalfAngle,
+                      "across the half vector between view and strongest light, whose shadow "
+                      "grows slice by slice in a buffer seen from the light"}},
+                    {.help = "How the slices lie"})
             .choice("sampling", &P::sampling,
                     {{"texture", SliceSampling::Texture, "trilinear at every pixel"},
                      {"vertex", SliceSampling::Vertex,
@@ -20,8 +27,13 @@ const Table<SlicesParams>& slices_table() {
                          "takes every cell's layer",
                  .min = 0.1,
                  .max = 16})
+            .add("light_pixels", &P::light_pixels,
+                 {.unit = "pixels",
+                  .help = "Along an edge of the light buffer of half-angle slices",
+                  .min = 16,
+                  .max = 8192})
             .add("fade", &P::fade,
-                 {.help = "Two stacks are mixed while the cosines of their axes with the view "
+                 {.help = "Two axis stacks are mixed while the cosines of their axes with the view "
                           "direction differ by less than this; 0 switches at once",
                   .min = 0,
                   .max = 0.5});
