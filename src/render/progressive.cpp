@@ -13,12 +13,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "image/coarse_order.h"
 #include "render/tile_grid.h"
 
 namespace gischt {
 namespace {
 
-constexpr int tile_edge = 16;  // pixels
+constexpr int tile_edge = 16;          // pixels
+constexpr double worth_showing = 0.5;  // s of work, after which the coarsest picture is shown
 constexpr double never = std::numeric_limits<double>::infinity();
 
 // Workers that no thread holds at the moment: at most as many as threads are ever made.
@@ -72,6 +74,7 @@ class Progression {
           state_(state),
           pool_(task),
           tiles_(view.width(), view.height(), tile_edge),
+          order_(view.width(), view.height()),
           start_(now_seconds()),
           next_partial_(settings.on_partial ? start_ + settings.partial_interval : never),
           next_checkpoint_(settings.on_checkpoint ? start_ + settings.checkpoint_interval : never),
@@ -155,7 +158,19 @@ class Progression {
     // Brings all tiles to their goals; false when the time was up before.
     bool pass() {
         const PhaseTimer timer(job_, task_.method);
-        const double stop = goal() == 1 ? never : stop_;
+        if (goal() > 1) return sweep(1, stop_);
+        // The first samples come from coarse to fine.
+        if (!sweep(CoarseOrder::coarsest, never)) return false;
+        if (next_partial_ < never && now_seconds() > start_ + worth_showing) next_partial_ = 0;
+        for (int edge = CoarseOrder::coarsest / 2; edge > 0; edge /= 2) {
+            if (!sweep(edge, stop_)) return false;
+        }
+        return true;
+    }
+
+    // The same for one pixel of each block of that edge.
+    bool sweep(int edge, double stop) {
+        edge_ = edge;
         pending_.resize(tiles_.count());
         std::iota(pending_.begin(), pending_.end(), 0);
         while (true) {
@@ -215,6 +230,7 @@ class Progression {
         bool whole = true;
         for (int y = area.y0; y < area.y1 && whole; ++y) {
             for (int x = area.x0; x < area.x1 && whole; ++x) {
+                if (edge_ > 1 && !order_.is_first(x, y, edge_)) continue;
                 for (auto s = film().samples(x, y); s < tile_goal && whole; ++s, ++taken) {
                     // One sample may take long.
                     whole = !job_.is_cancelled() && now_seconds() < pause;
@@ -284,6 +300,8 @@ class Progression {
     FilmState& state_;
     WorkerPool pool_;
     TileGrid tiles_;
+    CoarseOrder order_;
+    int edge_ = 1;  // of the blocks of which one pixel is taken
     double start_, next_partial_, next_checkpoint_, stop_;  // of now_seconds()
     std::vector<int> pending_;                              // tiles of this pass that are not done
     std::atomic<std::int64_t> taken_{0};                    // samples, for the progress

@@ -155,6 +155,29 @@ TEST(Progressive, KeepsItsTimeAndShowsAWholePicture) {
     for (const float n : result.image.channel("samples.Y")) EXPECT_GE(n, 1);
 }
 
+// Before its first pass is over, a picture is coarse but whole.
+TEST(Progressive, ShortTimeGivesACoarsePicture) {
+    RenderSettings settings;
+    settings.samples_per_pixel = 4;
+    settings.time_limit = 0.05;
+    FilmState film;
+    const RenderResult coarse = make(settings, &film, 0, 2e-3);
+    EXPECT_LT(coarse.statistics.samples_per_pixel, 0.5);
+    EXPECT_GE(coarse.statistics.samples_per_pixel, 1.0 / 64);
+    double sum = 0;
+    for (const float depth : coarse.image.channel("Z")) {
+        EXPECT_GT(depth, 0);  // every pixel shows a sample
+        sum += static_cast<double>(depth);
+    }
+    // Of evenly distributed numbers; at least 50 independent ones.
+    EXPECT_NEAR(sum / (width * height), 0.5, 4 * std::sqrt(1.0 / 12 / 50));
+
+    settings.time_limit = 0;
+    const RenderResult rest = make(settings, &film);
+    FilmState other;
+    EXPECT_EQ(rest.image.planes[0].values, make(settings, &other).image.planes[0].values);
+}
+
 TEST(Progressive, NoiseStopsWithoutAdaptionToo) {
     RenderSettings settings;
     settings.samples_per_pixel = 4096;
