@@ -11,6 +11,7 @@ namespace gischt {
 namespace {
 
 constexpr Aov march_aovs[] = {Aov::Transmittance};
+constexpr int most_depth = 100;
 constexpr float least_opacity = 0.01f;  // below, nothing was hit
 
 class MarchWorker : public PixelWorker {
@@ -21,8 +22,8 @@ class MarchWorker : public PixelWorker {
     void sample(const PixelSample& at, FilmSample& out, std::span<float> extra) override {
         const Ray ray = view_.camera.ray(at.film_x, at.film_y, at.lens, at.time);
         const MarchedRay seen = marcher_(ray, at.numbers);
-        rays = marcher_.rays;
-        lookups = marcher_.lookups;
+        rays = marcher_.rays();
+        lookups = marcher_.lookups();
 
         // The background shows through what is in front of it.
         const BackgroundSample behind = background(view_, ray.direction);
@@ -48,13 +49,14 @@ class MarchMethod : public RenderMethod {
     explicit MarchMethod(const MarchParams& params) : params_(params) {}
 
     RenderResult render(const View& view, const RenderSettings& settings, Job& job) override {
-        if (settings.depth != 1) {
+        if (settings.depth < 1 || settings.depth > most_depth) {
             throw Error(ErrorKind::Usage, "march",
-                        fmt::format("depth {} is not there: it follows light once", settings.depth),
-                        "take depth 1, or method 'path'");
+                        fmt::format("depth {} is not there: it goes from 1 to {}", settings.depth,
+                                    most_depth),
+                        "take method 'path'");
         }
         const double start = now_seconds();
-        const MarchScene scene(view, params_, job);
+        const MarchScene scene(view, params_, job, settings.depth);
         ProgressiveTask task;
         task.method = "march";
         task.layout = aov_layout(view, settings, {.method = "march", .aovs = march_aovs});

@@ -17,13 +17,13 @@ std::unique_ptr<RenderMethod> make_march_method(const MarchParams& params);
 
 inline constexpr std::string_view march_simulates =
     "absorption, emission and single scattering of point, spot, sun, sky and environment light; "
-    "shadows of media and surfaces on each other; by choice an approximation of multiple "
-    "scattering";
+    "shadows of media and surfaces on each other; with a depth above 1 light scattered up to so "
+    "many times; by choice an approximation of that";
 inline constexpr std::string_view march_leaves_out =
-    "light scattered twice or more (bright clouds stay dark without that approximation), light "
-    "from glowing media and surfaces on others";
+    "at depth 1 light scattered twice or more (bright clouds stay dark) and that of glowing media "
+    "and surfaces on others; glass, metal, lights with a size";
 inline constexpr std::string_view march_cost =
     "pixels times samples times voxels along the ray, plus per frame about 0.1 microseconds per "
-    "voxel and light for the grids of light";
+    "voxel and light for the grids of light; from depth to depth times directions and gathers";
 
 }  // namespace gischt

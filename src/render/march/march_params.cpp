@@ -38,6 +38,26 @@ const Table<MarchParams>& march_table() {
                   .min = 1000})
             .add("sky_directions", &MarchParams::sky_directions,
                  {.help = "Directions from which that grid takes the sky", .min = 24, .max = 4096})
+            .add("directions", &MarchParams::directions,
+                 {.help = "With a depth above 1: directions from which light is gathered at a "
+                          "place, M in eq. 20",
+                  .min = 1,
+                  .max = 4096})
+            .add("gathers", &MarchParams::gathers,
+                 {.help = "Places at which a ray gathers, per share of the light that it scatters; "
+                          "0 gathers at every step",
+                  .min = 0,
+                  .max = 1000})
+            .add(
+                "thinning", &MarchParams::thinning,
+                {.help = "Factor of directions and gathers from one level of gathering rays to the "
+                         "next",
+                 .min = 0.01,
+                 .max = 1})
+            .add("deep_step", &MarchParams::deep_step,
+                 {.help = "Steps of gathering rays, as a multiple of those of camera rays",
+                  .min = 0.1,
+                  .max = 16})
             .add("sky_samples", &MarchParams::sky_samples,
                  {.help = "Directions of the sky per sample, in each of two sets, at a point of a "
                           "surface; without light_cache at every step",

@@ -18,6 +18,12 @@ struct MarchParams {
     int sky_nodes = 300'000;    // of a grid of sky light, at least half a voxel apart
     int sky_directions = 128;   // from which the grid takes the sky
 
+    // With a depth above 1, eq. 20.
+    int directions = 4;     // in which light is gathered at a place
+    double gathers = 4;     // places on a ray that scatters all of the light; 0: every step
+    double thinning = 0.5;  // factor of both from one level of rays to the next
+    double deep_step = 2;   // steps of gathering rays over those of camera rays
+
     int sky_samples = 4;  // directions per set at a surface point; without cache per step too
 };
 

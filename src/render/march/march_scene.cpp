@@ -56,8 +56,8 @@ double grid_spacing(const Medium& medium, double least, std::int64_t most) {
     return spacing;
 }
 
-MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job& job)
-    : view(the_view), params(the_params) {
+MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job& job, int the_depth)
+    : view(the_view), params(the_params), depth(the_depth) {
     refuse_unknown_surfaces(view.surfaces);
     for (const LightPtr& light : view.lights) {
         if (const auto one = as_narrow(*light)) {
@@ -82,6 +82,10 @@ MarchScene::MarchScene(const View& the_view, const MarchParams& the_params, Job&
         m.extinction = medium->cross_sections().extinction();
         m.scattering = medium->cross_sections().scattering;
         m.octaves = octaves_of(*medium);
+        if (depth > 1 && m.octaves.size() > 1) {
+            m.octaves.resize(1);
+            job.info("march: multiple_scattering.octaves are left out, depth takes their place");
+        }
         m.octaves_halve = medium->multiple_scattering().attenuation == 0.5;
         m.feature = medium->cell_size() > 0 ? medium->cell_size()
                                             : length(medium->lattice().to_world.column[0]);
@@ -130,7 +134,7 @@ void MarchScene::make_depth_grids(MarchMedium& m, Job& job) const {
 
 Vec3f MarchScene::depth_to(std::size_t light, const Vec3d& point, const LightSample& sample,
                            std::size_t inside) const {
-    Vec3f depth;
+    Vec3f sum;
     for (std::size_t i = 0; i < media.size(); ++i) {
         const MarchMedium& m = media[i];
         const SunDepth* sun = m.sun_depth.empty() ? nullptr : m.sun_depth[light].get();
@@ -138,14 +142,14 @@ Vec3f MarchScene::depth_to(std::size_t light, const Vec3d& point, const LightSam
         const bool is_close = sample.distance < 4 * m.feature;
         const PointDepth* near =
             m.point_depth.empty() || i != inside || is_close ? nullptr : m.point_depth[light].get();
-        depth +=
+        sum +=
             m.extinction *
             (sun    ? (*sun)(point)
              : near ? (*near)(point)
                     : density_integral(*m.medium, {point, sample.direction, 0, sample.distance},
                                        shadow_steps()));
     }
-    return depth;
+    return sum;
 }
 
 }  // namespace gischt

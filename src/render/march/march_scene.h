@@ -45,10 +45,13 @@ double grid_spacing(const Medium& medium, double least, std::int64_t most);
 
 // A view made ready to march through.
 struct MarchScene {
-    MarchScene(const View& the_view, const MarchParams& the_params, Job& job);
+    // With a depth above 1 multiple scattering is computed: octaves, its approximation, are left
+    // out, and the job is told.
+    MarchScene(const View& the_view, const MarchParams& the_params, Job& job, int the_depth = 1);
 
     const View& view;
     const MarchParams& params;
+    int depth;  // most scattering events of a light path
     std::vector<MarchMedium> media;
     std::vector<NarrowLight> narrow;
     std::vector<const Light*> broad;  // from all of the sky
@@ -62,6 +65,7 @@ struct MarchScene {
     Vec3f depth_to(std::size_t light, const Vec3d& point, const LightSample& sample,
                    std::size_t inside) const;
     DepthSteps shadow_steps() const { return {params.shadow_step, 16}; }
+    DepthSteps deep_steps() const { return {params.shadow_step * params.deep_step, 10}; }
 
   private:
     void make_depth_grids(MarchMedium& m, Job& job) const;

@@ -6,6 +6,7 @@
 
 #include "image/color.h"
 #include "math/fast_math.h"
+#include "render/march/step.h"
 #include "render/progressive.h"
 
 namespace gischt {
@@ -17,6 +18,7 @@ enum : std::uint32_t {
     DimensionSun,
     DimensionSky,
     DimensionSkyToo,
+    DimensionDeep,
     DimensionStep = 16
 };
 
@@ -31,12 +33,6 @@ Vec2f shifted(Vec2f first, int i) {
     const float x = first.x + 0.7548777f * static_cast<float>(i),
                 y = first.y + 0.5698403f * static_cast<float>(i);
     return {x - std::floor(x), y - std::floor(y)};
-}
-
-// (1 - exp(-e ds)) / e, which is ds where nothing absorbs.
-float source_length(float e, float transmittance, float ds) {
-    const float x = e * ds;
-    return x < 1e-3f ? ds * (1 - 0.5f * x) : (1 - transmittance) / e;
 }
 
 // Sum over the octaves of weight times transmittance. Where the extinction halves from octave to
@@ -58,7 +54,8 @@ float sum_of_octaves(const MarchMedium& m, std::span<const float> weights, float
 
 }  // namespace
 
-RayMarcher::RayMarcher(const MarchScene& scene) : scene_(scene), sky_(scene.aimed_sky) {
+RayMarcher::RayMarcher(const MarchScene& scene)
+    : scene_(scene), sky_(scene.aimed_sky), deep_(scene) {
     for (const MarchMedium& m : scene.media) {
         phase_offset_.push_back(phase_stride_);
         phase_stride_ += m.octaves.size();
@@ -87,11 +84,15 @@ void RayMarcher::prepare_lights(const Ray& ray, const PixelSampler& sampler) {
 MarchedRay RayMarcher::operator()(const Ray& camera_ray, const PixelSampler& sampler) {
     result_ = {};
     step_ = 0;
-    ++rays;
+    ++rays_;
     Ray ray = camera_ray;
     const auto hit = scene_.view.surfaces.intersect(ray, 0.5f, RayKind::Camera);
     if (hit) ray.t_max = hit->t;
     prepare_lights(ray, sampler);
+    if (scene_.depth > 1) {
+        deep_.begin(sampler.stream(DimensionDeep));
+        gathers_ = deep_.places(0);
+    }
 
     // All media at once: between two neighbouring ends of segments the set of media is constant.
     walkers_.clear();
@@ -148,30 +149,32 @@ void RayMarcher::march_interval(const Ray& ray, double t0, double t1, const Pixe
     const int n = static_cast<int>(std::ceil(std::min(steps, 1e5)));
     const double dt = (t1 - t0) / n;
     const auto cutoff = static_cast<float>(scene_.params.cutoff);
-    const auto jitter = static_cast<double>(sampler.two(DimensionJitter).x);
+    const float jitter = sampler.two(DimensionJitter).x;
     std::array<double, batch> t;
     for (int first = 0; first < n; first += static_cast<int>(batch)) {
         const std::size_t count = std::min(batch, static_cast<std::size_t>(n - first));
         for (std::size_t i = 0; i < count; ++i) {
-            t[i] = t0 + (first + static_cast<double>(i) + jitter) * dt;
+            t[i] = t0 + (first + static_cast<double>(i)) * dt;
         }
-        march_batch(ray, {t.data(), count}, static_cast<float>(metres / n), sampler);
+        march_batch(ray, {t.data(), count}, dt, jitter, sampler);
         if (max_component(result_.transmittance) <= cutoff) return;
     }
 }
 
-// Up to 16 steps of `length` metres: eq. 19.
-void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float length,
+// Up to 16 steps that begin at t: eq. 19.
+void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, double dt, float jitter,
                              const PixelSampler& sampler) {
+    const auto length = static_cast<float>(dt * gischt::length(ray.direction));
     std::array<float, batch> local;
     for (Walker& w : walkers_) {
         if (!w.is_active) continue;
         const Medium& medium = *scene_.media[w.medium].medium;
         for (std::size_t i = 0; i < t.size(); ++i) {
-            local[i] = static_cast<float>(t[i] - w.segment.anchor);
+            local[i] =
+                static_cast<float>(t[i] + static_cast<double>(jitter) * dt - w.segment.anchor);
         }
         medium.densities(w.segment, {local.data(), t.size()}, w.density.data());
-        lookups += static_cast<std::int64_t>(t.size());
+        lookups_ += static_cast<std::int64_t>(t.size());
         if (medium.has_color()) {
             for (std::size_t i = 0; i < t.size(); ++i) {
                 w.scattering[i] = scene_.media[w.medium].scattering *
@@ -184,27 +187,22 @@ void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float le
         }
     }
     for (std::size_t i = 0; i < t.size(); ++i, ++step_) {
-        const Vec3d point = ray.at(t[i]);
-        Vec3f extinction, source;
+        Vec3f extinction, glow;
         for (const Walker& w : walkers_) {
             if (!w.is_active) continue;
             const MarchMedium& m = scene_.media[w.medium];
-            const float density = w.density[i];
-            if (m.medium->is_emissive()) source += w.emission[i];
-            if (density == 0) continue;
-            extinction += density * m.extinction;
-            const Vec3f& scattering = m.medium->has_color() ? w.scattering[i] : m.scattering;
-            source += density * scattering * in_scattered(w.medium, ray, point, sampler);
+            if (m.medium->is_emissive()) glow += w.emission[i];
+            extinction += w.density[i] * m.extinction;
         }
-        if (extinction == Vec3f{} && source == Vec3f{}) continue;
+        if (extinction == Vec3f{} && glow == Vec3f{}) continue;
         const Vec3f transmittance = scene_.is_grey ? Vec3f(fast_exp(-length * extinction.x))
                                                    : fast_exp(-length * extinction);
-        const Vec3f gain{source_length(extinction.x, transmittance.x, length),
-                         source_length(extinction.y, transmittance.y, length),
-                         source_length(extinction.z, transmittance.z, length)};
-        result_.radiance += result_.transmittance * gain * source;
+        const Vec3f gain = result_.transmittance * source_length(extinction, transmittance, length);
+        result_.radiance += gain * glow;
+        scatter(ray, ray.at(t[i] + lit_place(jitter, extinction, length) / length * dt), i, gain,
+                sampler);
         const float lost = luminance(result_.transmittance * (Vec3f(1) - transmittance));
-        result_.depth += lost * static_cast<float>(t[i]);
+        result_.depth += lost * static_cast<float>(t[i] + static_cast<double>(jitter) * dt);
         result_.opacity += lost;
         result_.transmittance = result_.transmittance * transmittance;
         if (max_component(result_.transmittance) <= static_cast<float>(scene_.params.cutoff)) {
@@ -213,10 +211,29 @@ void RayMarcher::march_batch(const Ray& ray, std::span<const double> t, float le
     }
 }
 
+// What step i of a batch scatters of the light that arrives at a point in it.
+void RayMarcher::scatter(const Ray& ray, const Vec3d& point, std::size_t i, const Vec3f& gain,
+                         const PixelSampler& sampler) {
+    for (const Walker& w : walkers_) {
+        if (!w.is_active || w.density[i] == 0) continue;
+        const MarchMedium& m = scene_.media[w.medium];
+        const Vec3f weight =
+            gain * w.density[i] * (m.medium->has_color() ? w.scattering[i] : m.scattering);
+        if (!(max_component(weight) > 0)) continue;
+        Vec3f arrives = in_scattered(w.medium, ray, point, sampler);
+        if (scene_.depth > 1) {
+            const float gathered = gathers_.weight_of(luminance(weight));
+            if (gathered > 0) {
+                arrives += gathered * deep_.at_medium(w.medium, point, normalize(ray.direction), 0);
+            }
+        }
+        result_.radiance += weight * arrives;
+    }
+}
+
 // Sum over the lights of radiance times phase function, per scattering coefficient.
 Vec3f RayMarcher::in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
                                const PixelSampler& sampler) {
-    if (max_component(scene_.media[medium].scattering) == 0) return {};
     Vec3f sum = from_broad(medium, ray, point, sampler);
     for (std::size_t l = 0; l < scene_.narrow.size(); ++l) {
         sum += from_narrow(medium, l, ray, point);
@@ -285,9 +302,9 @@ Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& po
             const Vec3f radiance = light->radiance(towards);
             const Ray shadow{point, towards};
             if (max_component(radiance) <= 0 || scene_.view.surfaces.is_blocked(shadow)) continue;
-            ++rays;
+            ++rays_;
             const Vec3f depth =
-                optical_depth(scene_.view.media, shadow, scene_.shadow_steps(), &lookups);
+                optical_depth(scene_.view.media, shadow, scene_.shadow_steps(), &lookups_);
             Vec3f scattered;
             const auto cosine = static_cast<float>(dot(towards, forward));
             for (const Octave& o : m.octaves) {
@@ -302,8 +319,8 @@ Vec3f RayMarcher::from_broad(std::size_t medium, const Ray& ray, const Vec3d& po
 
 // Transmittance of a shadow ray. That of the sky is taken in longer steps: it is one of many.
 Vec3f RayMarcher::through_media(const Ray& ray, double step) {
-    ++rays;
-    return fast_exp(-optical_depth(scene_.view.media, ray, {step, 10}, &lookups));
+    ++rays_;
+    return fast_exp(-optical_depth(scene_.view.media, ray, {step, 10}, &lookups_));
 }
 
 // Lambert reflection of all lights, each seen through the media.
@@ -324,6 +341,7 @@ Vec3f RayMarcher::shade(const SurfaceHit& hit, const PixelSampler& sampler) {
     for (std::size_t b = 0; b < scene_.broad.size(); ++b) {
         irradiance += sky_irradiance(b, hit, sampler);
     }
+    if (scene_.depth > 1) irradiance += deep_.at_surface(hit, 0);
     return hit.emission + static_cast<float>(1 / pi) * hit.albedo * irradiance;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/pixel_sampler.h"
+#include "render/march/deep_march.h"
 #include "render/march/march_scene.h"
 
 namespace gischt {
@@ -23,10 +24,12 @@ class RayMarcher {
   public:
     explicit RayMarcher(const MarchScene& scene);
 
-    // Eq. 19 front to back up to the nearest surface, which is shaded, or to the end of the media.
+    // Eq. 19 front to back up to the nearest surface, which is shaded, or to the end of the media;
+    // eq. 20 where the scene's depth is above 1.
     MarchedRay operator()(const Ray& ray, const PixelSampler& sampler);
 
-    std::int64_t rays = 0, lookups = 0;
+    std::int64_t rays() const { return rays_ + deep_.rays; }
+    std::int64_t lookups() const { return lookups_ + deep_.lookups; }
 
   private:
     static constexpr std::size_t batch = 16;
@@ -49,8 +52,10 @@ class RayMarcher {
 
     void prepare_lights(const Ray& ray, const PixelSampler& sampler);
     void march_interval(const Ray& ray, double t0, double t1, const PixelSampler& sampler);
-    void march_batch(const Ray& ray, std::span<const double> t, float length,
+    void march_batch(const Ray& ray, std::span<const double> t, double dt, float jitter,
                      const PixelSampler& sampler);
+    void scatter(const Ray& ray, const Vec3d& point, std::size_t i, const Vec3f& gain,
+                 const PixelSampler& sampler);
     Vec3f in_scattered(std::size_t medium, const Ray& ray, const Vec3d& point,
                        const PixelSampler& sampler);
     Vec3f from_narrow(std::size_t medium, std::size_t light, const Ray& ray, const Vec3d& point);
@@ -74,7 +79,10 @@ class RayMarcher {
     std::vector<float> local_weight_;        // the same for one light at a finite place
     std::vector<AimedSky> sky_;              // by broad light; empty without surfaces
     std::uint32_t step_ = 0;                 // steps done on this ray
+    DeepMarch deep_;                         // light that was scattered before, and where
+    GatherPlaces gathers_{0, 0};             // it is gathered on this ray
     MarchedRay result_;
+    std::int64_t rays_ = 0, lookups_ = 0;
 };
 
 }  // namespace gischt
