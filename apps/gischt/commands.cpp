@@ -163,6 +163,36 @@ void add_flipbook(CLI::App& app, CommandContext& context) {
     });
 }
 
+// gischt ladder SCENE|FILE.vdb|CACHE [-o DIR]
+void add_ladder(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<LadderOptions>();
+    SceneOptions& o = options->scene;
+    CLI::App* sub = app.add_subcommand(
+        "ladder", "One scene by every method: pictures, differences, a sheet and a table");
+    sub->add_option("TARGET", o.target, "A scene, a .vdb file or pattern, or a cache folder")
+        ->required();
+    sub->add_option("-o,--output", o.outputs, "Folder (default: out/NAME/ladder)")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
+    sub->add_option("--methods", options->methods,
+                    "Only these, with commas (default: all that show light)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("A,B");
+    sub->add_option("--reference", options->reference,
+                    "A method, or a picture that was rendered before (default: path)")
+        ->type_name("METHOD|FILE.exr");
+    sub->add_option("--reference-spp", options->reference_spp,
+                    "Samples per pixel of the reference (default: four times the scene's)")
+        ->check(CLI::Range(1, 1 << 24));
+    sub->add_option("--cache", o.cache, "Folder that keeps simulated frames")->type_name("DIR");
+    add_scene_flags(*sub, o, true);
+    add_work_flags(*sub, context);
+    sub->callback([options, &context] {
+        context.action = [options, &context] { return make_ladder(*options, context); };
+    });
+}
+
 // gischt check SCENE
 void add_check(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<SceneOptions>();
@@ -310,6 +340,7 @@ std::optional<int> parse(int argc, char** argv, CommandContext& context) {
     add_sim(app, context);
     add_render(app, context);
     add_flipbook(app, context);
+    add_ladder(app, context);
     add_check(app, context);
     add_view(app, context);
     add_info(app, context);

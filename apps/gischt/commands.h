@@ -35,6 +35,12 @@ struct FlipbookOptions {
     bool premultiplied = false, fit = false;
     double light_scale = 1;
 };
+struct LadderOptions {
+    SceneOptions scene;
+    std::vector<std::string> methods;
+    std::string reference = "path";
+    int reference_spp = 0;
+};
 struct DocOptions {
     std::string address;
     bool markdown = false, json_schema = false;
@@ -45,6 +51,7 @@ int run_scene(const SceneOptions& options, CommandContext& context);
 int simulate_scene(const SceneOptions& options, CommandContext& context);
 int render_target(const SceneOptions& options, CommandContext& context);
 int make_flipbook(const FlipbookOptions& options, CommandContext& context);
+int make_ladder(const LadderOptions& options, CommandContext& context);
 int check_scene(const SceneOptions& options, CommandContext& context);
 int open_window(const SceneOptions& options, const CommandContext& context);
 int print_info(const std::string& target, Job& job);

@@ -45,15 +45,9 @@ class Outputs {
         }
     }
 
-    // A colour map is a picture of itself: its codes are written as they are.
     WriteOptions options(const Image& image) const {
         WriteOptions o;
-        if (image.metadata.get("display_referred") == "true") {
-            o.display = {.tone = ToneKind::Linear, .exposure = 0, .dither = false};
-            return o;
-        }
-        o.display.tone = scene_.scene.film.tone;
-        o.display.exposure = scene_.scene.film.exposure;
+        o.display = display_of(scene_.scene, image);
         return o;
     }
     std::string path_of(const std::string& pattern, int frame) const {
@@ -196,6 +190,26 @@ void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, 
         for (FluidFrames& fluid : fluids) fluid.ensure(frame, run, job);
     }
     for (FluidFrames& fluid : fluids) fluid.finish();
+}
+
+View frame_view(const LoadedScene& scene, const Order& order, int frame, RunStatistics& run,
+                Job& job) {
+    const std::optional<Cache> cache = open_cache(scene, order);
+    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr);
+    std::vector<std::shared_ptr<const Frame>> frames;
+    for (FluidFrames& fluid : fluids) frames.push_back(fluid.get(frame, run, job));
+    for (FluidFrames& fluid : fluids) fluid.finish();
+    return World(scene.scene, job).view(frames, frame, job);
+}
+
+DisplayOptions display_of(const Scene& scene, const Image& image) {
+    // A colour map is a picture of itself: its codes are written as they are.
+    if (image.metadata.get("display_referred") == "true")
+        return {.tone = ToneKind::Linear, .exposure = 0, .dither = false};
+    DisplayOptions o;
+    o.tone = scene.film.tone;
+    o.exposure = scene.film.exposure;
+    return o;
 }
 
 std::vector<std::string> render(const LoadedScene& scene, const Order& order, RunStatistics& run,

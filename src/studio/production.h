@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "image/display.h"
+#include "optics/view.h"
 #include "studio/fluid_frames.h"
 #include "studio/frame_range.h"
 
@@ -33,5 +35,12 @@ void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, 
 // frame's number where there are several. Returns the paths written.
 std::vector<std::string> render(const LoadedScene& scene, const Order& order, RunStatistics& run,
                                 Job& job);
+
+// The view of one frame, as render() would show it; simulates up to it where it is not cached.
+View frame_view(const LoadedScene& scene, const Order& order, int frame, RunStatistics& run,
+                Job& job);
+
+// How the scene wants its pictures shown; a picture of data, with codes of its own, as it is.
+DisplayOptions display_of(const Scene& scene, const Image& image);
 
 }  // namespace gischt

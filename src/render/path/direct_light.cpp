@@ -117,8 +117,16 @@ void PathTracer::from_local(const Scatterer& at, const Leg& leg, RandomStream& r
             leg.events, drawn.index);
 }
 
+// The chance with which a sky is looked for at a point. Walks through a medium find an even sky by
+// themselves; a direction drawn from it costs a shadow ray through the medium.
+float PathTracer::sky_chance(const Scatterer& at) const {
+    return at.medium ? scene_.sky_chance : 1;
+}
+
 // A direction drawn from a sky, weighed against the scattering that may find it as well.
 void PathTracer::from_broad(const Scatterer& at, const Leg& leg, RandomStream& random) {
+    const float chance = sky_chance(at);
+    if (chance < 1 && random.next() >= chance) return;
     const auto n = static_cast<float>(scene_.broad.size());
     const auto pick = static_cast<std::size_t>(random.next() * n);
     const PathScene::Drawn& drawn = scene_.broad[std::min(pick, scene_.broad.size() - 1)];
@@ -126,7 +134,7 @@ void PathTracer::from_broad(const Scatterer& at, const Leg& leg, RandomStream& r
     if (!(s.pdf > 0) || max_component(s.weight) <= 0) return;
     const Vec3f value = at.value(s.direction);
     if (max_component(value) <= 0) return;
-    const float weight = n * (s.pdf / n) / (s.pdf / n + at.pdf(s.direction));
+    const float weight = s.pdf / (chance * s.pdf / n + at.pdf(s.direction));
     deposit(leg.weight.value() * weight * value * s.weight *
                 shadow(at, at.leave(s.direction, s.distance), random),
             leg.events, drawn.index);
@@ -152,7 +160,9 @@ void PathTracer::from_infinity(const Leg& leg, const Vec3f& transmittance) {
         const Vec3f radiance = d.light->radiance(direction);
         if (max_component(radiance) <= 0) continue;
         const float share =
-            leg.pdf > 0 ? leg.pdf / (leg.pdf + d.light->pdf(leg.from, direction) / n) : 1;
+            leg.pdf > 0
+                ? leg.pdf / (leg.pdf + leg.sky_chance * d.light->pdf(leg.from, direction) / n)
+                : 1;
         deposit(share * weight * radiance, leg.events, d.index);
     }
     if (leg.pdf > 0) return;

@@ -42,6 +42,12 @@ const Table<PathParams>& path_table() {
                           "exact one, which removes the grid's error in the mean",
                   .min = 0.001,
                   .max = 1})
+            .add("sky_chance", &PathParams::sky_chance,
+                 {.help = "Largest chance with which a sky or environment picture is sampled at a "
+                          "scattering in a medium; it is less the more even the sky is, as walks "
+                          "find that by themselves",
+                  .min = 0,
+                  .max = 1})
             .add("roulette", &PathParams::roulette,
                  {.help = "Paths whose weight is below this may end at random", .min = 0, .max = 1})
             .add("cache_nodes", &PathParams::cache_nodes,

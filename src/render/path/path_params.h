@@ -30,6 +30,7 @@ struct PathParams {
     int equiangular = 4;     // more points of such a ray, for lights at finite places alone
     bool bridge = true;      // suns are reached through chains of turns that end in their direction
     double correction = 0.1;  // chance that a cached transmittance is made exact
+    double sky_chance = 1;    // largest with which a sky is sampled at a scattering in a medium
     double roulette = 0.1;    // paths weaker than this share of their start may end at random
     std::int64_t cache_nodes = 40'000'000;  // of one grid towards a sun
 };

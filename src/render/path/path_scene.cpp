@@ -58,6 +58,7 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
     }
     if (is_emissive && !has_interiors) glow = EmissionSampler(view.media);
     sort_lights(job);
+    sky_chance = chance_of_skies();
     for (const Drawn& d : local) {
         if (d.light->place()) placed.push_back(d.light);
     }
@@ -102,6 +103,23 @@ void PathScene::sort_lights(Job& job) {
             broad.push_back({light, index});
         }
     }
+}
+
+// In proportion to how far the brightest spot of them stands out.
+float PathScene::chance_of_skies() const {
+    constexpr float sure = 1000;  // times the mean
+    float peak = 0;
+    for (const Drawn& d : broad) {
+        const auto* sky = dynamic_cast<const EnvironmentLight*>(d.light);
+        if (!sky) return static_cast<float>(params.sky_chance);
+        float brightest = 0;
+        for (int y = 0; y < sky->map().height(); ++y) {
+            for (int x = 0; x < sky->map().width(); ++x)
+                brightest = std::max(brightest, luminance(sky->map().texel(x, y)));
+        }
+        peak = std::max(peak, brightest / std::max(luminance(sky->map().mean()), 1e-30f));
+    }
+    return std::min(static_cast<float>(params.sky_chance), peak / sure);
 }
 
 void PathScene::take_motion() {

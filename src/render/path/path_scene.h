@@ -39,6 +39,7 @@ struct PathScene {
     std::vector<Drawn> local;          // at finite places
     std::vector<const Light*> placed;  // those of them that have a place
     std::vector<Drawn> broad;          // at infinity, sampled and met by chance
+    float sky_chance = 1;              // with which these are looked for at a point of a medium
     std::vector<Drawn> even;           // the same from everywhere: met by chance only
     EmissionSampler glow;              // media that glow; empty where surfaces have insides
     // By surface: the light that it is, null where it cannot be sampled.
@@ -68,6 +69,7 @@ struct PathScene {
     void take_motion();
     void sort_lights(Job& job);
     void refuse_what_none_can_meet() const;
+    float chance_of_skies() const;
     void make_grids(SunSource& sun, Job& job) const;
 
     std::vector<std::vector<const Medium*>> moving_;  // by part; as long as media each

@@ -68,7 +68,8 @@ class PathTracer {
         int mirrors = 0;  // delta scatterings of surfaces so far
         Vec3d from;       // the last scattering that was none of these
         float pdf = 0;    // of the direction from there by what scatters, 1/sr; 0: it was a mirror
-        float glow = 0;   // of the direction in EmissionSampler, were there no surfaces, 1/sr
+        float sky_chance = 1;  // with which a sky was looked for there
+        float glow = 0;        // of the direction in EmissionSampler, were there no surfaces, 1/sr
         // The scatterings in succession by one medium up to here (see sun_bridge.cpp).
         const Medium* run_in = nullptr;
         int run = 0;
@@ -110,6 +111,7 @@ class PathTracer {
     Vec3f sunlight(const SunSource& sun, const Scatterer& at, const LightSample& s,
                    RandomStream& random);
     void from_local(const Scatterer& at, const Leg& leg, RandomStream& random);
+    float sky_chance(const Scatterer& at) const;
     void from_broad(const Scatterer& at, const Leg& leg, RandomStream& random);
     void from_infinity(const Leg& leg, const Vec3f& transmittance);
     void from_surface(const Leg& leg, const SurfaceHit& hit, const Vec3f& transmittance);

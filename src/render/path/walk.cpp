@@ -95,6 +95,7 @@ bool PathTracer::scatter_in_medium(Leg& leg, const Collision& collision, RandomS
 bool PathTracer::go_on(const Scatterer& at, Leg& leg, RandomStream& random) {
     if (has_bridges(*at.medium)) set_out_bridges(at, leg, random.branch(1));
     leg.from = at.point;
+    leg.sky_chance = sky_chance(at);
     return turn(at, leg, random).has_value();
 }
 
@@ -128,6 +129,7 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
     } else {
         ++leg.events;
         leg.from = hit.point;
+        leg.sky_chance = 1;
     }
     if (next->is_transmission) cross(hit);
     return survives(leg, random);
