@@ -77,6 +77,7 @@ void PathTracer::see(Leg leg, const PixelSampler& sampler) {
         const auto hit = intersect(leg.ray, RayKind::Camera);
         if (hit) leg.ray.t_max = hit->t;
         if (!tracker_.media.empty()) see_through(leg, sampler);
+        if (gather_ && !tracker_.media.empty()) gather_along(leg, profile_, stream_of(sampler, 4));
         const Vec3f depth = tracker_.media.empty() ? Vec3f{} : profile_.depth();
         leg.weight.weight = leg.weight.weight * exp(-depth);
         if (luminance(leg.weight.weight) < 1e-9f) return;
@@ -211,6 +212,19 @@ void PathTracer::note_first(float share, const Scatterer& at, const Vec3f& albed
     result_.opacity += share;
     result_.albedo += share * albedo;
     result_.normal += share * normal;
+}
+
+void PathTracer::gather_along(const Leg& leg, const RayProfile& profile,
+                              const RandomStream& random) {
+    const EyeGather::Light light = gather_->along(leg.ray, profile, tracker_.media, random);
+    deposit(leg.weight.value() * light.once, 1);
+    deposit(leg.weight.value() * light.more, 2);
+}
+
+void PathTracer::gather_at(const Leg& leg, const SurfaceHit& hit, const Bsdf& bsdf) {
+    const EyeGather::Light light = gather_->at(hit, bsdf, -leg.ray.direction);
+    deposit(leg.weight.value() * light.once, 1);
+    deposit(leg.weight.value() * light.more, 2);
 }
 
 // From half a frame before the view's time to half a frame after it, in pixels.

@@ -25,6 +25,7 @@ void PathTracer::follow(Leg leg, RandomStream& random) {
             continue;
         }
         from_surface(leg, *hit, Vec3f(1));
+        if (gather_ && leg.events > 0) return;
         if (!scatter_at_surface(leg, *hit, random)) return;
     }
 }
@@ -36,6 +37,10 @@ PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& colli
         hit = intersect(leg.ray, kind_of(leg));
         if (hit) leg.ray.t_max = hit->t;
         if (!tracker_.media.empty()) {
+            if (gather_ && leg.events == 0) {
+                gather_profile_.trace(tracker_.media, leg.ray, scene_.is_grey, tracker_.lookups);
+                gather_along(leg, gather_profile_, random.branch(4));
+            }
             Vec3f glow;
             const bool collides =
                 tracker_.fly(leg.ray, hero_, leg.weight, random, collision, &glow);
@@ -119,6 +124,7 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
         Leg lit = leg;
         ++lit.events;
         direct_light(at, lit, random);
+        if (gather_ && leg.events == 0) gather_at(leg, hit, bsdf);
     }
     const auto next = turn(at, leg, random);
     if (!next) return false;
