@@ -179,10 +179,11 @@ class PathTracer {
     int hero_ = 0;
     float moment_ = 0.5f;
     Ray camera_ray_;
+    PixelSampler sampler_;                 // of the sample
     std::optional<InteriorStack> inside_;  // only where surfaces have an inside
     const Medium* interior_ = nullptr;
     Tracker tracker_;
-    RayProfile profile_, glow_profile_, gather_profile_;
+    RayProfile profile_, glow_profile_;
     AngleSampler angles_;
     std::vector<ProfilePoint> points_;
     TracedRay result_;

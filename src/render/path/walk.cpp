@@ -37,10 +37,6 @@ PathTracer::End PathTracer::fly(Leg& leg, RandomStream& random, Collision& colli
         hit = intersect(leg.ray, kind_of(leg));
         if (hit) leg.ray.t_max = hit->t;
         if (!tracker_.media.empty()) {
-            if (gather_ && leg.events == 0) {
-                gather_profile_.trace(tracker_.media, leg.ray, scene_.is_grey, tracker_.lookups);
-                gather_along(leg, gather_profile_, random.branch(4));
-            }
             Vec3f glow;
             const bool collides =
                 tracker_.fly(leg.ray, hero_, leg.weight, random, collision, &glow);

@@ -91,13 +91,13 @@ void expect_slabs(const PhotonParams& params, const Effort& effort, double most_
 
 PhotonParams few_photons() {
     PhotonParams params;
-    params.photons = 4000;
+    params.photons = 3000;
     params.nearest = 10;
     return params;
 }
 
 TEST(PhotonSlab, ReflectsAndTransmitsWhatTheTablesSay) {
-    expect_slabs(few_photons(), {.batches = 16, .samples = 256, .seed = 1}, 0.03, 0);
+    expect_slabs(few_photons(), {.batches = 16, .samples = 64, .seed = 1}, 0.15, 0);
 }
 TEST(PhotonSlabLong, ReflectsAndTransmitsWhatTheTablesSayWithinHalfAPercent) {
     PhotonParams params = few_photons();

@@ -69,14 +69,14 @@ std::vector<Scene> scenes() {
 
 PhotonParams fine() {
     PhotonParams params;
-    params.photons = 40'000;
+    params.photons = 20'000;
     params.nearest = 12;
     return params;
 }
 
 // The ball of a photon, or of a gathering, blurs; `bias` relative to the mean is allowed for that.
 void expect_agreement(const Scene& scene, const PhotonParams& params, int depth,
-                      const Effort& effort, double bias) {
+                      const Effort& effort, double bias, double most_error) {
     PathParams plain;
     Effort reference = effort;
     reference.samples *= 4;
@@ -91,23 +91,19 @@ void expect_agreement(const Scene& scene, const PhotonParams& params, int depth,
         EXPECT_LE(off, critical_z(100, effort.batches) * error + bias * truth.mean[c])
             << scene.name << " depth " << depth << " channel " << c << ": " << got.mean[c] << " +- "
             << got.error[c] << " and " << truth.mean[c] << " +- " << truth.error[c];
-        EXPECT_LT(error, 0.01 * truth.mean[c]) << scene.name;
+        EXPECT_LT(error, most_error * truth.mean[c]) << scene.name << " depth " << depth;
     }
 }
 
+constexpr Effort brief{.batches = 16, .samples = 64, .seed = 1};
+
 TEST(PhotonAgreement, WithThePathTracerByBeams) {
-    for (const Scene& scene : scenes()) {
-        expect_agreement(scene, fine(), 2, {.batches = 16, .samples = 512, .seed = 1}, 0.006);
-        expect_agreement(scene, fine(), 64, {.batches = 16, .samples = 512, .seed = 2}, 0.006);
-    }
+    for (const Scene& scene : scenes()) expect_agreement(scene, fine(), 32, brief, 0.006, 0.06);
 }
 TEST(PhotonAgreement, WithThePathTracerByPoints) {
     PhotonParams params = fine();
     params.gather = PhotonGather::Points;
-    params.photons = 100'000;
-    for (const Scene& scene : scenes()) {
-        expect_agreement(scene, params, 64, {.batches = 16, .samples = 256, .seed = 3}, 0.04);
-    }
+    for (const Scene& scene : scenes()) expect_agreement(scene, params, 32, brief, 0.05, 0.06);
 }
 
 // Fog around a glass ball under a lamp, seen through the ball as well: light that comes through the
@@ -135,21 +131,21 @@ Scene volume_caustic() {
 }
 
 TEST(PhotonAgreement, OfCausticsInFogAndInGlass) {
-    for (const int depth : {1, 2, 32}) {
+    for (const int depth : {1, 32}) {
         expect_agreement(volume_caustic(), fine(), depth,
-                         {.batches = 16, .samples = 4096, .seed = 4}, 0.006);
+                         {.batches = 16, .samples = 256, .seed = 4}, 0.006, 0.04);
     }
 }
 
 TEST(PhotonAgreementLong, WithThePathTracer) {
     PhotonParams params = fine();
-    params.photons = 400'000;
+    params.photons = 200'000;
     std::vector<Scene> all = scenes();
     all.push_back(volume_caustic());
     for (const Scene& scene : all) {
         for (const int depth : {1, 2, 8, 64}) {
-            expect_agreement(scene, params, depth, {.batches = 24, .samples = 8192, .seed = 5},
-                             0.002);
+            expect_agreement(scene, params, depth, {.batches = 16, .samples = 4096, .seed = 5},
+                             0.003, 0.012);
         }
     }
 }
@@ -171,7 +167,8 @@ TEST(Photon, SunShinesThroughGlassIntoFog) {
     view.surfaces = SurfaceSet({pane}, 0);
     view.lights = {delta_sun({0, 0, 1}, Vec3f(2))};
     PhotonParams params = fine();
-    const Estimate got = mapped_radiance(view, params, {.depth = 1, .batches = 32, .samples = 256});
+    params.photons = 4000;
+    const Estimate got = mapped_radiance(view, params, {.depth = 1, .batches = 32, .samples = 64});
     // Along the ray of 1.6 m, and from above to the ray, on average over the picture of 1 m.
     const auto mean_exp = [](double a, double b) {
         return (std::exp(-a) - std::exp(-b)) / (b - a);
@@ -179,7 +176,7 @@ TEST(Photon, SunShinesThroughGlassIntoFog) {
     const double truth = 2 * 2 * n / (n * n + 1) * (1 - std::exp(-1.6 * thin)) / (4 * pi) *
                          mean_exp(0.3 * thin, 1.3 * thin);
     expect_mean(got, 0, truth, 1, "pane", 1e-3);
-    EXPECT_LT(got.error.x, 0.01 * truth);
+    EXPECT_LT(got.error.x, 0.015 * truth);
 }
 
 // The mean over maps converges: with a reduction of 2/3 bias and noise fall alike, and the error
@@ -188,8 +185,8 @@ TEST(PhotonLong, ErrorFallsWithTheCubeRootOfThePasses) {
     View view = lit({delta_sun({-1, 1, 1}, Vec3f(3))});
     view.media = {voxels(
         16, [](const Vec3d& p) { return lumps(p); }, coefficients(Vec3d(8), Vec3d(0.95), 0.6))};
-    constexpr int edge = 6;
-    const int most = 128, runs = 6;
+    constexpr int edge = 4;
+    const int most = 128, runs = 8;
     PhotonParams params = fine();
     params.photons = 3000;
     params.reduction = 2.0 / 3;
@@ -201,7 +198,7 @@ TEST(PhotonLong, ErrorFallsWithTheCubeRootOfThePasses) {
     };
     for (int p = 0; p < edge * edge; ++p) {
         double sum = 0;
-        const int n = 40'000;
+        const int n = 20'000;
         for (int i = 0; i < n; ++i) {
             const PixelSampler numbers(7, 1, p % edge, p / edge, static_cast<std::uint32_t>(i));
             sum += double(traced.tracer(ray_of(p, numbers), 0.5f, numbers).radiance.x);
@@ -248,9 +245,9 @@ TEST(PhotonLong, ErrorFallsWithTheNumberOfPhotons) {
     Traced traced(view, PathParams{}, 32);
     const Ray ray = view.camera.ray(0.6, 0.45);
     double truth = 0;
-    for (int i = 0; i < 400'000; ++i) {
+    for (int i = 0; i < 200'000; ++i) {
         const PixelSampler numbers(3, 1, 0, 0, static_cast<std::uint32_t>(i));
-        truth += double(traced.tracer(ray, 0.5f, numbers).radiance.x) / 400'000;
+        truth += double(traced.tracer(ray, 0.5f, numbers).radiance.x) / 200'000;
     }
     const auto error = [&](std::int64_t photons, double radius) {
         PhotonParams params = fine();

@@ -115,32 +115,36 @@ TEST(PhotonTracer, GlassBallMakesTheCausticOfFresnelAndSnell) {
     View view;
     view.surfaces = SurfaceSet({ball, screen}, 0);
     view.lights = {delta_sun({0, 0, 1}, Vec3f(2))};
-    Mapped mapped(view, kept(40'000), 1);
-    const double discs[] = {0.1, 0.3, 0.8, 1.5};
-    for (const double disc : discs) {
-        double truth = 0;
-        constexpr int rings = 20'000;
-        for (int k = 0; k < rings; ++k) {
-            const double b = (k + 0.5) / rings;
-            for (int order = 0; order < 8; ++order) {
-                const BallRay ray = through_ball(b, n, order, radius, plane);
-                if (ray.share > 0 && ray.place < disc) {
-                    truth += 2 * 2 * pi * b / rings * ray.share;
+    Mapped mapped(view, kept(10'000), 1);
+    const Vec3d discs{0.1, 0.4, 1.5};
+    Vec3d truth;
+    constexpr int rings = 20'000;
+    for (int k = 0; k < rings; ++k) {
+        const double b = (k + 0.5) / rings;
+        for (int order = 0; order < 8; ++order) {
+            const BallRay ray = through_ball(b, n, order, radius, plane);
+            for (int d = 0; d < 3; ++d) {
+                if (ray.share > 0 && ray.place < discs[d]) {
+                    truth[d] += 2 * 2 * pi * b / rings * ray.share;
                 }
             }
         }
-        const Estimate got = estimate(32, [&](int batch) {
-            const PhotonSet set = trace_photons(mapped.scene, mapped.count, 8, batch, mapped.job);
-            double sum = 0;
-            for (const Photon& p : set.on_surfaces) {
-                EXPECT_EQ(p.events, 1);
-                const Vec3d at = Vec3d(p.position) + mapped.scene.origin;
-                if (std::hypot(at.x, at.y) < disc && at.z < -2) sum += double(p.power.x);
+    }
+    const Estimate got = estimate(32, [&](int batch) {
+        Vec3d sum;
+        for (const Photon& p :
+             trace_photons(mapped.scene, mapped.count, 8, batch, mapped.job).on_surfaces) {
+            EXPECT_EQ(p.events, 1);
+            const Vec3d at = Vec3d(p.position) + mapped.scene.origin;
+            for (int d = 0; d < 3; ++d) {
+                if (std::hypot(at.x, at.y) < discs[d] && at.z < -2) sum[d] += double(p.power.x);
             }
-            return Vec3d(sum);
-        });
-        expect_mean(got, 0, truth, 4, "disc", 2e-3);
-        EXPECT_LT(got.error.x, 0.01 * truth);
+        }
+        return sum;
+    });
+    for (int d = 0; d < 3; ++d) {
+        expect_mean(got, d, truth[d], 3, "disc", 1e-3);
+        EXPECT_LT(got.error[d], 0.01 * truth[d]);
     }
 }
 
@@ -155,7 +159,7 @@ TEST(PhotonTracer, GlassLosesNothing) {
     View view;
     view.surfaces = SurfaceSet({ball, room}, 0);
     view.lights = {point_light({0, 0, 0}, Vec3f(1))};
-    Mapped mapped(view, kept(20'000), 1);
+    Mapped mapped(view, kept(4000), 1);
     const double cosine = std::sqrt(1 - 1 / 6.25);
     const Estimate got = estimate(32, [&](int batch) {
         return power_of(
@@ -179,7 +183,7 @@ TEST(PhotonTracer, AimChangesNoMean) {
     view.lights = {delta_sun({1, 0, 1}, {1, 0, 0}), sky({0, 1, 0}),
                    point_light({-1, 0, 3}, {1, 1, 1})};
     const auto powers = [&](double aim, bool in_media) {
-        PhotonParams params = kept(10'000);
+        PhotonParams params = kept(4000);
         params.aim = aim;
         Mapped mapped(view, params, 4);
         EXPECT_EQ(mapped.scene.aimed.has_value(), aim > 0);
