@@ -79,7 +79,7 @@ void PathScene::refuse_what_none_can_meet() const {
             fmt::format("light '{}' has no size, and would not be seen in the medium behind "
                         "the glass of '{}'",
                         (*tiny)->name, info.name),
-            "take a rect, disc, sphere, constant or environment light, or method 'march' "
+            "take a rect, disc, sphere, constant or environment light, method 'photon', or 'march' "
             "without the glass");
     }
 }
