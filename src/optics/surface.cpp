@@ -301,6 +301,11 @@ Box3d SurfaceSet::bounds() const {
     return all;
 }
 
+Box3d SurfaceSet::bounds_of(int surface) const {
+    const SurfaceEntry& s = content_->surfaces[static_cast<std::size_t>(surface)];
+    return s.mesh ? content_->meshes.bounds() : gischt::bounds(s.shape);
+}
+
 Ray leaving_ray(const SurfaceHit& hit, const Vec3d& direction) {
     Ray ray;
     const double side = dot(direction, hit.normal) < 0 ? -1 : 1;

@@ -100,6 +100,8 @@ class SurfaceSet {
 
     // Box around the finite surfaces, empty when there are none.
     Box3d bounds() const;
+    // Box around one surface, infinite for a ground; of a mesh that around all meshes.
+    Box3d bounds_of(int surface) const;
 
     struct Content;  // surface_content.h
     explicit SurfaceSet(std::shared_ptr<const Content> content) : content_(std::move(content)) {}

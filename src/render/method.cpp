@@ -11,13 +11,14 @@
 #include "render/march/march.h"
 #include "render/params.h"
 #include "render/path/path.h"
+#include "render/photon/photon.h"
 #include "render/points/points.h"
 #include "render/slices/slices.h"
 
 namespace gischt {
 namespace {
 
-constexpr std::array<MethodInfo, 7> methods{{
+constexpr std::array<MethodInfo, 8> methods{{
     {"field", field_simulates, field_leaves_out, field_cost,
      [](const RenderParams& p) { return make_field_method(p.field); }},
     {"points", points_simulates, points_leaves_out, points_cost,
@@ -30,6 +31,8 @@ constexpr std::array<MethodInfo, 7> methods{{
      [](const RenderParams& p) { return make_gpu_march_method(p.gpu_march); }},
     {"march", march_simulates, march_leaves_out, march_cost,
      [](const RenderParams& p) { return make_march_method(p.march); }},
+    {"photon", photon_simulates, photon_leaves_out, photon_cost,
+     [](const RenderParams& p) { return make_photon_method(p.photon); }},
     {"path", path_simulates, path_leaves_out, path_cost,
      [](const RenderParams& p) { return make_path_method(p.path); }},
 }};
@@ -43,6 +46,8 @@ const Table<RenderParams>& render_params_table() {
             .sub("field", &RenderParams::field, field_params_table(),
                  {.help = "Of the method 'field'"})
             .sub("path", &RenderParams::path, path_table(), {.help = "Of the method 'path'"})
+            .sub("photon", &RenderParams::photon, photon_table(),
+                 {.help = "Of the method 'photon'"})
             .sub("points", &RenderParams::points, points_table(),
                  {.help = "Of the method 'points'"})
             .sub("billboards", &RenderParams::billboards, billboards_table(),

@@ -6,6 +6,7 @@
 #include "render/march/gpu_march_params.h"
 #include "render/march/march_params.h"
 #include "render/path/path_params.h"
+#include "render/photon/photon_params.h"
 #include "render/points/points_params.h"
 #include "render/slices/slices_params.h"
 #include "schema/table.h"
@@ -17,6 +18,7 @@ struct RenderParams {
     MarchParams march;
     FieldParams field;
     PathParams path;
+    PhotonParams photon;
     PointsParams points;
     BillboardsParams billboards;
     SlicesParams slices;

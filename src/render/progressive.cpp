@@ -52,9 +52,14 @@ class WorkerPool {
     std::vector<std::unique_ptr<PixelWorker>> idle_;
 };
 
-// Passes double, and grow by a quarter where one may be the last because of its noise.
-int next_goal(int goal, const RenderSettings& settings) {
-    const int next = settings.noise > 0 && goal >= 8 ? goal + goal / 4 : 2 * goal;
+// Passes double, and grow by a quarter where one may be the last because of its noise. They end
+// with a group of samples.
+int next_goal(int goal, const RenderSettings& settings, const ProgressiveTask& task) {
+    int next = settings.noise > 0 && goal >= 8 ? goal + goal / 4 : 2 * goal;
+    if (task.prepare) {
+        const int at = settings.first_sample + goal;
+        next = std::min(next, (at / task.group + 1) * task.group - settings.first_sample);
+    }
     return std::min(next, settings.samples_per_pixel);
 }
 
@@ -134,14 +139,14 @@ class Progression {
 
     // The goals of the next pass; false when there is none.
     bool set_goals() {
-        const int now = goal(), next = next_goal(now, settings_);
+        const int now = goal(), next = next_goal(now, settings_, task_);
         if (now >= settings_.samples_per_pixel || now_seconds() >= stop_) return false;
         if (settings_.noise > 0 && now > 1) {
             const double noise = film().noise();
             least_done_ = noise > 0 ? std::min(1.0, std::pow(settings_.noise / noise, 2)) : 1;
-            if (!settings_.adaptive && noise <= settings_.noise) return false;
+            if (!is_adaptive() && noise <= settings_.noise) return false;
         }
-        if (!(settings_.noise > 0 && settings_.adaptive && now >= first_adaptive_goal)) {
+        if (!(settings_.noise > 0 && is_adaptive() && now >= first_adaptive_goal)) {
             goals().assign(tiles_.count(), next);
             return true;
         }
@@ -155,8 +160,19 @@ class Progression {
         return any;
     }
 
+    bool is_adaptive() const { return settings_.adaptive && !task_.prepare; }
+
+    void prepare() {
+        const int last = goal();
+        const auto& pixels = std::as_const(film()).pixels();
+        const bool is_done = std::all_of(pixels.begin(), pixels.end(),
+                                         [&](const FilmPixel& p) { return p.count >= last; });
+        if (!is_done) task_.prepare((settings_.first_sample + last - 1) / task_.group);
+    }
+
     // Brings all tiles to their goals; false when the time was up before.
     bool pass() {
+        if (task_.prepare) prepare();
         const PhaseTimer timer(job_, task_.method);
         if (goal() > 1) return sweep(1, stop_);
         // The first samples come from coarse to fine.

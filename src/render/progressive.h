@@ -50,6 +50,12 @@ struct ProgressiveTask {
     AovLayout layout;         // of aov_layout: the film's channels beside R, G, B, A, Z
     // Called by several threads, one at a time.
     std::function<std::unique_ptr<PixelWorker>()> make_worker;
+    // For workers that share something which serves `group` samples of each pixel and is made anew
+    // then: called by one thread, while no worker is at work, before samples of the numbers
+    // [n group, (n + 1) group) are taken, which all pixels are before those of n + 1. No part of
+    // the picture is left out early then. Null: nothing of the kind.
+    std::function<void(int n)> prepare;
+    int group = 1;
 };
 
 // Renders the samples [first_sample, first_sample + samples_per_pixel) of every pixel of the view,

@@ -24,6 +24,8 @@ enum : std::uint32_t {
     DimensionStream = 1000
 };
 
+constexpr std::uint32_t most_seen_mirrors = 64;  // as in walk.cpp
+
 RandomStream stream_of(const PixelSampler& sampler, std::uint32_t branch) {
     return {sampler.stream_key(DimensionStream + branch), 0, sampler, DimensionTurn};
 }
@@ -50,6 +52,7 @@ const TracedRay& PathTracer::operator()(const Ray& ray, float moment, const Pixe
     result_.of_light = std::move(of_light);
     result_.alpha = 1;
     moment_ = moment;
+    sampler_ = sampler;
     camera_ray_ = ray;
     tracker_.part = scene_.part_of(moment);
     tracker_.media = scene_.media_in(tracker_.part);
@@ -74,9 +77,10 @@ const TracedRay& PathTracer::operator()(const Ray& ray, float moment, const Pixe
 void PathTracer::see(Leg leg, const PixelSampler& sampler) {
     constexpr int most_boundaries = 64;
     for (int i = 0; i < most_boundaries; ++i) {
-        const auto hit = intersect(leg.ray, RayKind::Camera);
+        const auto hit = intersect(leg.ray, kind_of(leg));
         if (hit) leg.ray.t_max = hit->t;
         if (!tracker_.media.empty()) see_through(leg, sampler);
+        if (gather_ && !tracker_.media.empty()) gather_along(leg, profile_, stream_of(sampler, 4));
         const Vec3f depth = tracker_.media.empty() ? Vec3f{} : profile_.depth();
         leg.weight.weight = leg.weight.weight * exp(-depth);
         if (luminance(leg.weight.weight) < 1e-9f) return;
@@ -107,7 +111,15 @@ void PathTracer::see_surface(const Leg& leg, const SurfaceHit& hit, const PixelS
         Leg next = leg;
         next.weight.weight *= 1 / static_cast<float>(splits);
         next.start /= static_cast<float>(splits);
-        if (scatter_at_surface(next, hit, random)) follow(next, random);
+        if (scatter_at_surface(next, hit, random)) {
+            // In a mirror everything is gathered as it is when seen at once.
+            if (gather_ && next.events == 0) {
+                see(next,
+                    sampler_.part(most_seen_mirrors + 1, static_cast<std::uint32_t>(next.mirrors)));
+            } else {
+                follow(next, random);
+            }
+        }
         if (splits == 1) return;
         inside_ = inside;
         take_media();
@@ -141,7 +153,7 @@ void PathTracer::see_through(const Leg& leg, const PixelSampler& sampler) {
         const Vec3f albedo = medium->cross_sections().scattering /
                              max(medium->cross_sections().extinction(), Vec3f(1e-30f));
         const Scatterer here{point, forward, medium, nullptr, nullptr};
-        note_first(mean(at.weight.weight), here, albedo, {});
+        if (leg.mirrors == 0) note_first(mean(at.weight.weight), here, albedo, {});
         direct_light(here, at, random, profile_share(p.t));
     }
     // Paths go on from some of the points, evenly chosen.
@@ -211,6 +223,19 @@ void PathTracer::note_first(float share, const Scatterer& at, const Vec3f& albed
     result_.opacity += share;
     result_.albedo += share * albedo;
     result_.normal += share * normal;
+}
+
+void PathTracer::gather_along(const Leg& leg, const RayProfile& profile,
+                              const RandomStream& random) {
+    const EyeGather::Light light = gather_->along(leg.ray, profile, tracker_.media, random);
+    deposit(leg.weight.value() * light.once, 1);
+    deposit(leg.weight.value() * light.more, 2);
+}
+
+void PathTracer::gather_at(const Leg& leg, const SurfaceHit& hit, const Bsdf& bsdf) {
+    const EyeGather::Light light = gather_->at(hit, bsdf, -leg.ray.direction);
+    deposit(leg.weight.value() * light.once, 1);
+    deposit(leg.weight.value() * light.more, 2);
 }
 
 // From half a frame before the view's time to half a frame after it, in pixels.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "math/pixel_sampler.h"
@@ -43,6 +44,24 @@ struct Scatterer {
     Ray leave(const Vec3d& direction, double distance) const;
 };
 
+// What another method finds of the light that the camera's rays meet before their first scattering.
+// With one the path tracer follows light only straight from its sources to that first scattering,
+// and leaves the rest to it.
+class EyeGather {
+  public:
+    virtual ~EyeGather() = default;
+    // W/(m^2 sr), scattered once and more often.
+    struct Light {
+        Vec3f once, more;
+    };
+    // What comes to the origin of a ray from [0, t_max], in which these media are; the profile is
+    // the ray's.
+    virtual Light along(const Ray& ray, const RayProfile& profile,
+                        std::span<const Medium* const> media, RandomStream random) = 0;
+    // What a surface sends to `out`.
+    virtual Light at(const SurfaceHit& hit, const Bsdf& bsdf, const Vec3d& out) = 0;
+};
+
 // Follows paths through a scene; keeps scratch memory, so one per thread.
 class PathTracer {
   public:
@@ -52,6 +71,8 @@ class PathTracer {
 
     // Fills `motion`. The view must know the cameras around its frame.
     void show_motion() { shows_motion_ = true; }
+    // Must outlive the tracer; for a depth of 1 at most.
+    void leave_rest_to(EyeGather* gather) { gather_ = gather; }
 
     const TracedRay& operator()(const Ray& ray, float moment, const PixelSampler& sampler);
 
@@ -146,6 +167,8 @@ class PathTracer {
     void take_media();
     bool passes(const SurfaceHit& hit) const;
 
+    void gather_along(const Leg& leg, const RayProfile& profile, const RandomStream& random);
+    void gather_at(const Leg& leg, const SurfaceHit& hit, const Bsdf& bsdf);
     // Adds light that was scattered `events` times.
     void deposit(const Vec3f& radiance, int events, int light = -1);
     // The same of light that something on the path gave off itself.
@@ -154,9 +177,11 @@ class PathTracer {
     const PathScene& scene_;
     int depth_;
     bool shows_motion_ = false;
+    EyeGather* gather_ = nullptr;
     int hero_ = 0;
     float moment_ = 0.5f;
     Ray camera_ray_;
+    PixelSampler sampler_;                 // of the sample
     std::optional<InteriorStack> inside_;  // only where surfaces have an inside
     const Medium* interior_ = nullptr;
     Tracker tracker_;

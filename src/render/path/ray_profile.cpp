@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "image/color.h"
 #include "math/fast_math.h"
@@ -171,6 +172,24 @@ const RayProfile::Piece* RayProfile::find(double t) const {
     if (after == pieces_.begin()) return nullptr;
     --after;
     return t <= after->t0 + static_cast<double>(after->length) ? &*after : nullptr;
+}
+
+Vec3f RayProfile::depth_to(double t) const {
+    if (pieces_.empty() || t <= pieces_.front().t0) return {};
+    auto piece = std::upper_bound(pieces_.begin(), pieces_.end(), t,
+                                  [](double x, const Piece& p) { return x < p.t0; });
+    --piece;
+    return piece->depth +
+           std::min(static_cast<float>(t - piece->t0), piece->length) * piece->extinction;
+}
+
+double RayProfile::end_at(float depth) const {
+    const auto piece = std::find_if(pieces_.begin(), pieces_.end(), [depth](const Piece& p) {
+        return min_component(p.depth + p.length * p.extinction) > depth;
+    });
+    if (piece == pieces_.end()) return std::numeric_limits<double>::infinity();
+    const Vec3f left = (Vec3f(depth) - piece->depth) / max(piece->extinction, Vec3f(1e-30f));
+    return piece->t0 + static_cast<double>(max_component(left));
 }
 
 float RayProfile::density(double t) const {

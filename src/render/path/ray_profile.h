@@ -33,6 +33,11 @@ class RayProfile {
     // Optical depth per channel of all of it.
     const Vec3f& depth() const { return depth_; }
 
+    // The same up to t, the extinction being taken as constant in each piece; without look-ups.
+    Vec3f depth_to(double t) const;
+    // The t before which the optical depth of the clearest channel stays below `depth`.
+    double end_at(float depth) const;
+
     // Appends n points with a density in proportion to the mean over the channels that have an
     // extinction of transmittance times extinction (constant extinction taken in each piece), at
     // the stratified places (i + u) / n. The sum over the points of weight * f estimates the

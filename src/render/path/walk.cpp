@@ -25,6 +25,7 @@ void PathTracer::follow(Leg leg, RandomStream& random) {
             continue;
         }
         from_surface(leg, *hit, Vec3f(1));
+        if (gather_ && leg.events > 0) return;
         if (!scatter_at_surface(leg, *hit, random)) return;
     }
 }
@@ -120,6 +121,7 @@ bool PathTracer::scatter_at_surface(Leg& leg, const SurfaceHit& hit, RandomStrea
         Leg lit = leg;
         ++lit.events;
         direct_light(at, lit, random);
+        if (gather_ && leg.events == 0) gather_at(leg, hit, bsdf);
     }
     const auto next = turn(at, leg, random);
     if (!next) return false;
