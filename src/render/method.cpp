@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "render/billboards/billboards.h"
+#include "render/diffusion/diffusion.h"
 #include "render/field/field.h"
 #include "render/march/gpu_march.h"
 #include "render/march/march.h"
@@ -13,11 +14,12 @@
 #include "render/path/path.h"
 #include "render/points/points.h"
 #include "render/slices/slices.h"
+#include "render/zonal/zonal.h"
 
 namespace gischt {
 namespace {
 
-constexpr std::array<MethodInfo, 7> methods{{
+constexpr std::array<MethodInfo, 9> methods{{
     {"field", field_simulates, field_leaves_out, field_cost,
      [](const RenderParams& p) { return make_field_method(p.field); }},
     {"points", points_simulates, points_leaves_out, points_cost,
@@ -30,6 +32,10 @@ constexpr std::array<MethodInfo, 7> methods{{
      [](const RenderParams& p) { return make_gpu_march_method(p.gpu_march); }},
     {"march", march_simulates, march_leaves_out, march_cost,
      [](const RenderParams& p) { return make_march_method(p.march); }},
+    {"diffusion", diffusion_simulates, diffusion_leaves_out, diffusion_cost,
+     [](const RenderParams& p) { return make_diffusion_method(p.diffusion); }},
+    {"zonal", zonal_simulates, zonal_leaves_out, zonal_cost,
+     [](const RenderParams& p) { return make_zonal_method(p.zonal); }},
     {"path", path_simulates, path_leaves_out, path_cost,
      [](const RenderParams& p) { return make_path_method(p.path); }},
 }};
@@ -50,7 +56,10 @@ const Table<RenderParams>& render_params_table() {
             .sub("slices", &RenderParams::slices, slices_table(),
                  {.help = "Of the method 'slices'"})
             .sub("gpu_march", &RenderParams::gpu_march, gpu_march_table(),
-                 {.help = "Of the method 'gpu_march'"});
+                 {.help = "Of the method 'gpu_march'"})
+            .sub("zonal", &RenderParams::zonal, zonal_table(), {.help = "Of the method 'zonal'"})
+            .sub("diffusion", &RenderParams::diffusion, diffusion_table(),
+                 {.help = "Of the method 'diffusion'"});
     return table;
 }
 
