@@ -77,7 +77,7 @@ class Diffused : public ScatteredSource {
         Vec3f light = grid_.interpolate(light_.fluence, point);
         for (int a = 0; a < 3 && g != 0; ++a) {
             light -= static_cast<float>(3 * forward[a]) * g *
-                     grid_.interpolate(light_.flux[static_cast<std::size_t>(a)], point);
+                     grid_.interpolate_signed(light_.flux[static_cast<std::size_t>(a)], point);
         }
         return {{}, {}, static_cast<float>(0.25 / pi) * max(light, Vec3f(0))};
     }

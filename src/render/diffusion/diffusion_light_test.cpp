@@ -39,7 +39,7 @@ TEST(Diffusion, PowerThatIsEverywhereLeavesOrIsAbsorbed) {
     for (auto& m : p.moment) m.resize(p.grid.size());
     Job job;
     const DiffuseLight light = diffuse_light(p, 1e-6, job);
-    // All that is given is absorbed, or leaves by the faces with phi / 2 there.
+    // All that is given is absorbed, or leaves by the faces.
     const double h = 1.0 / 24, d = (0.8 + 8) / (3.0 * 64);
     double absorbed = 0, left = 0;
     for (std::size_t i = 0; i < p.grid.size(); ++i) {
@@ -48,17 +48,18 @@ TEST(Diffusion, PowerThatIsEverywhereLeavesOrIsAbsorbed) {
         absorbed += 0.8 * phi * h * h * h;
         for (int a = 0; a < 3; ++a) {
             const int faces = (c[a] == 0 ? 1 : 0) + (c[a] == 23 ? 1 : 0);
-            left += faces * h * h * 0.5 * phi / (1 + 0.25 * h / d);
+            left += faces * h * h * d * phi / (0.7104 / 8 + 0.5 * h);
         }
     }
     EXPECT_NEAR(absorbed + left, 1, 1e-4);
 }
 
-// In a layer, phi = c cosh(k (z - 1/2)) + power / a with F n = phi / 2 at its ends.
+// In a layer, phi = c cosh(k (z - 1/2)) + power / a with phi = z F n / D at its ends.
 TEST(Diffusion, LayerIsTheSolutionOfTheEquation) {
     const double a = 1, s = 9, total = a + s, d = (2 * a + s) / (3 * total * total),
                  k = std::sqrt(a / d);
-    const double c = -1 / a * 0.5 / (0.5 * std::cosh(0.5 * k) + d * k * std::sinh(0.5 * k));
+    const double z = 0.7104 / total;
+    const double c = -1 / a / (std::cosh(0.5 * k) + z * k * std::sinh(0.5 * k));
     double error[2];
     int run = 0;
     for (const int n : {16, 32}) {
@@ -71,10 +72,10 @@ TEST(Diffusion, LayerIsTheSolutionOfTheEquation) {
         Job job;
         const DiffuseLight light = diffuse_light(p, 1e-6, job);
         error[run] = 0;
-        for (int z = 0; z < n; ++z) {
-            const double at = (z + 0.5) / n;
+        for (int layer = 0; layer < n; ++layer) {
+            const double at = (layer + 0.5) / n;
             const double truth = c * std::cosh(k * (at - 0.5)) + 1 / a;
-            const double phi = double(light.fluence[p.grid.index({2 * n, 2 * n, z})].x);
+            const double phi = double(light.fluence[p.grid.index({2 * n, 2 * n, layer})].x);
             error[run] = std::max(error[run], std::abs(phi - truth) / truth);
         }
         ++run;

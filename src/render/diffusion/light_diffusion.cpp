@@ -15,6 +15,7 @@ namespace {
 
 constexpr double least_thickness = 1e-3;  // of a cell in free paths
 constexpr int most_iterations = 200;
+constexpr double extrapolation = 0.7104;  // free paths: Milne's problem (Hopf 1934)
 
 // One channel of the problem on cells of edge h; everything is divided by h and by the largest D.
 class Channel {
@@ -92,8 +93,13 @@ class Channel {
     double between(std::size_t i, std::size_t j) const {
         return 2 * diffusion_[i] * diffusion_[j] / (diffusion_[i] + diffusion_[j]);
     }
-    // F n = phi / 2 at a face half a cell away: F = (phi / 2 + 3/4 h moment n) times this.
-    double leak(std::size_t i) const { return 1 / (1 + 0.25 * h_ / diffusion_[i]); }
+    // phi = z F n / D at a face half a cell away, z being the distance at which phi would vanish
+    // beyond it: F = (phi + 3/2 h moment n) times this.
+    double leak(std::size_t i) const {
+        const double z =
+            extrapolation / static_cast<double>(problem_.transport_extinction[i][channel_]);
+        return diffusion_[i] / (z + 0.5 * h_);
+    }
 
     void assemble(FaceField& weight, TileField<float>& extra, TileField<float>& right) const {
         for_cells([&](const Vec3i& c, std::size_t i) {
@@ -105,8 +111,8 @@ class Channel {
                     const double way = end == 0 ? -1 : 1;
                     const std::size_t j = beyond(c, i, a, end);
                     if (j == i) {
-                        held += 0.5 * h_ * leak(i);
-                        source -= h_ * 0.75 * h_ * way * moment(i, a) * leak(i);
+                        held += h_ * leak(i);
+                        source -= h_ * 1.5 * h_ * way * moment(i, a) * leak(i);
                         continue;
                     }
                     source -= h_ * 1.5 * between(i, j) * way * (moment(i, a) + moment(j, a));
@@ -127,7 +133,7 @@ class Channel {
         const auto phi = [&](std::size_t k) {
             return static_cast<double>(light.fluence[k][channel_]);
         };
-        if (j == i) return (0.5 * phi(i) + 0.75 * h_ * way * moment(i, axis)) * leak(i);
+        if (j == i) return (phi(i) + 1.5 * h_ * way * moment(i, axis)) * leak(i);
         return between(i, j) *
                ((phi(i) - phi(j)) / h_ + 1.5 * way * (moment(i, axis) + moment(j, axis)));
     }

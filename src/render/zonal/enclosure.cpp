@@ -48,16 +48,18 @@ StartingLine starting_line(const Enclosure& enclosure, int side, int cell_in_sid
     const ZoneGrid& grid = enclosure.grid;
     const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     const bool is_upper = side % 2 != 0;
-    const auto i = static_cast<std::uint32_t>(index);
+    // Cells have other numbers than their neighbours, so that all directions come up; every fourth
+    // has the same.
+    const int across = cell_in_side % grid.cells[u], up = cell_in_side / grid.cells[u];
+    const int tile = (across & 3) + 4 * (up & 3);
+    const auto i = static_cast<std::uint32_t>(tile * enclosure.lines + index);
     const auto seed = static_cast<std::uint32_t>(side);
     const Vec2f place = sobol_2d(i, 2 * seed + 1), turn = sobol_2d(i, 2 * seed + 20);
     const Vec3d h = grid.cell_size();
     StartingLine line;
     line.origin[axis] = is_upper ? grid.box.hi[axis] : grid.box.lo[axis];
-    line.origin[u] =
-        grid.box.lo[u] + h[u] * (cell_in_side % grid.cells[u] + static_cast<double>(place.x));
-    line.origin[v] =
-        grid.box.lo[v] + h[v] * (cell_in_side / grid.cells[u] + static_cast<double>(place.y));
+    line.origin[u] = grid.box.lo[u] + h[u] * (across + static_cast<double>(place.x));
+    line.origin[v] = grid.box.lo[v] + h[v] * (up + static_cast<double>(place.y));
     const double sine = std::sqrt(static_cast<double>(turn.x));
     const double angle = 2 * pi * static_cast<double>(turn.y);
     line.direction[axis] = (is_upper ? -1 : 1) * std::sqrt(1 - sine * sine);

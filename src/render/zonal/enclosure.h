@@ -36,8 +36,8 @@ struct Enclosure {
     std::array<Vec3f, 6> incoming{};  // W/(m^2 sr), at open sides
     // Null, or the surfaces in the box; then all sides are open.
     const SurfaceSet* surfaces = nullptr;
-    // Lines that start in a cell of an open side; 6 * lines * 2/3 of them pass a zone.
-    int lines = 64;
+    // Lines that start in each cell of an open side; some 6 times as many pass each zone.
+    int lines = 16;
 
     std::vector<SurfacePatch> patches;
     std::unordered_map<std::uint64_t, int> patch_of_key;
@@ -90,8 +90,7 @@ class LineTracer {
 };
 
 // A line that starts in a cell of an open side: evenly distributed over the cell and, by cosine,
-// over the directions inwards. All cells of a side have the same ones, so that what errors there
-// are vary slowly from zone to zone.
+// over the directions inwards. Each cell has its part of one sequence, which 4 x 4 cells share out.
 struct StartingLine {
     Vec3d origin, direction;
     // Area times solid angle times cosine that it stands for, m^2 sr. Lines are used both ways and

@@ -18,10 +18,10 @@ struct ZonalParams {
     int zones = 24;  // along the longest edge
     ZonalSolver solver = ZonalSolver::Auto;
     std::int64_t memory_limit = 64;  // MB of a matrix
-    int lines = 64;                  // from each zone's face at the sides
+    int lines = 16;                  // from each zone's face at the sides
     int light_samples = 32;          // points per zone and directions per light
     int ordinates = 8;               // cosines; twice as many angles around each
-    double tolerance = 1e-3;
+    double tolerance = 1e-5;
     int iterations = 500;
     double thickness = 2;  // largest optical thickness of a zone
     bool surfaces = false;

@@ -17,19 +17,21 @@ ZoneGrid ZoneGrid::even(const Box3d& box, const Vec3i& cells, float extinction, 
     return grid;
 }
 
-Vec3f ZoneGrid::interpolate(std::span<const Vec3f> values, const Vec3d& point) const {
+Vec3f ZoneGrid::interpolate_signed(std::span<const Vec3f> values, const Vec3d& point) const {
     const Vec3d at = (point - box.lo) / cell_size() - Vec3d(0.5);
-    const Vec3i first = floor(at);
-    const Vec3d f = at - Vec3d(first);
-    Vec3f sum;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3i o(corner & 1, corner >> 1 & 1, corner >> 2);
-        double weight = 1;
-        for (int a = 0; a < 3; ++a) weight *= o[a] ? f[a] : 1 - f[a];
-        const Vec3i c = min(max(first + o, Vec3i(0)), cells - Vec3i(1));
-        sum += static_cast<float>(weight) * values[index(c)];
+    Vec3i first;
+    Vec3f f;
+    for (int a = 0; a < 3; ++a) {
+        const double inside = std::clamp(at[a], -0.5, cells[a] - 0.5);
+        first[a] = std::clamp(static_cast<int>(std::floor(inside)), 0, std::max(cells[a] - 2, 0));
+        f[a] = cells[a] > 1 ? static_cast<float>(inside - first[a]) : 0.0f;
     }
-    return sum;
+    const std::size_t i = index(first), dx = cells.x > 1 ? 1 : 0,
+                      dy = cells.y > 1 ? static_cast<std::size_t>(cells.x) : 0,
+                      dz = cells.z > 1 ? static_cast<std::size_t>(cells.x * cells.y) : 0;
+    const auto row = [&](std::size_t j) { return (1 - f.x) * values[j] + f.x * values[j + dx]; };
+    const auto plane = [&](std::size_t j) { return (1 - f.y) * row(j) + f.y * row(j + dy); };
+    return (1 - f.z) * plane(i) + f.z * plane(i + dz);
 }
 
 Vec3f ZoneGrid::depth(const Ray& ray) const {

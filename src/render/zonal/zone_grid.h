@@ -41,8 +41,12 @@ struct ZoneGrid {
         const Vec3i c = floor((point - box.lo) / cell_size());
         return min(max(c, Vec3i(0)), cells - Vec3i(1));
     }
-    // Trilinear between the centres of the cells, constant beyond them.
-    Vec3f interpolate(std::span<const Vec3f> values, const Vec3d& point) const;
+    // Trilinear between the centres of the cells and on to the sides of the box, constant beyond;
+    // the first one not below 0.
+    Vec3f interpolate(std::span<const Vec3f> values, const Vec3d& point) const {
+        return max(interpolate_signed(values, point), Vec3f(0));
+    }
+    Vec3f interpolate_signed(std::span<const Vec3f> values, const Vec3d& point) const;
     // Optical depth along a ray from a point of the box until t_max or out of it, t in metres.
     Vec3f depth(const Ray& ray) const;
     // Optical thickness of the thickest zone across its longest edge, strongest channel.
