@@ -47,6 +47,7 @@ struct SurfaceInfo {
     MaterialKind material{};
     Vec3f emission;          // W/(m^2 sr)
     bool two_sided = true;   // shines to both sides; false for sheets that shine to their front
+    bool is_sheet = false;   // without an inside: a rectangle, a disc, a mesh that is not closed
     bool is_moving = false;  // while the film is exposed
     bool is_lamp = false;    // stands for a light of the scene, not for a solid
     bool holdout = false, shadow_catcher = false, camera_visible = true;

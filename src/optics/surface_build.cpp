@@ -252,6 +252,7 @@ static SurfaceInfo make_info(const SurfaceParams& surface, const Material& m, do
     if (m.kind == MaterialKind::Dielectric) info.ior = m.ior;
     if (const SheetPlace* sheet = sheet_of(surface)) {
         info.two_sided = sheet->two_sided;
+        info.is_sheet = true;
         if (info.has_interior) refuse(info.name, "a sheet has no inside", "take a box");
     }
     return info;
@@ -273,6 +274,7 @@ static void place_mesh(SurfaceEntry& s, const SurfaceSources& sources,
     s.info.is_moving = moments.shutter > 0 && moves(params, *sources.mesh);
     // A closed one shines outwards, as half of the samples would be lost inside.
     s.info.two_sided = !sources.is_closed;
+    s.info.is_sheet = !sources.is_closed;
     s.mesh = std::move(mesh);
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/method.h"
 
-#include <array>
 #include <vector>
 
 #include "base/error.h"
 #include "render/billboards/billboards.h"
+#include "render/diffusion/diffusion.h"
 #include "render/field/field.h"
 #include "render/march/gpu_march.h"
 #include "render/march/march.h"
@@ -14,11 +14,12 @@
 #include "render/photon/photon.h"
 #include "render/points/points.h"
 #include "render/slices/slices.h"
+#include "render/zonal/zonal.h"
 
 namespace gischt {
 namespace {
 
-constexpr std::array<MethodInfo, 8> methods{{
+constexpr MethodInfo methods[] = {
     {"field", field_simulates, field_leaves_out, field_cost,
      [](const RenderParams& p) { return make_field_method(p.field); }},
     {"points", points_simulates, points_leaves_out, points_cost,
@@ -33,9 +34,13 @@ constexpr std::array<MethodInfo, 8> methods{{
      [](const RenderParams& p) { return make_march_method(p.march); }},
     {"photon", photon_simulates, photon_leaves_out, photon_cost,
      [](const RenderParams& p) { return make_photon_method(p.photon); }},
+    {"diffusion", diffusion_simulates, diffusion_leaves_out, diffusion_cost,
+     [](const RenderParams& p) { return make_diffusion_method(p.diffusion); }},
+    {"zonal", zonal_simulates, zonal_leaves_out, zonal_cost,
+     [](const RenderParams& p) { return make_zonal_method(p.zonal); }},
     {"path", path_simulates, path_leaves_out, path_cost,
      [](const RenderParams& p) { return make_path_method(p.path); }},
-}};
+};
 
 }  // namespace
 
@@ -55,7 +60,10 @@ const Table<RenderParams>& render_params_table() {
             .sub("slices", &RenderParams::slices, slices_table(),
                  {.help = "Of the method 'slices'"})
             .sub("gpu_march", &RenderParams::gpu_march, gpu_march_table(),
-                 {.help = "Of the method 'gpu_march'"});
+                 {.help = "Of the method 'gpu_march'"})
+            .sub("zonal", &RenderParams::zonal, zonal_table(), {.help = "Of the method 'zonal'"})
+            .sub("diffusion", &RenderParams::diffusion, diffusion_table(),
+                 {.help = "Of the method 'diffusion'"});
     return table;
 }
 

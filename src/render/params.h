@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/billboards/billboards_params.h"
+#include "render/diffusion/diffusion_params.h"
 #include "render/field/field_params.h"
 #include "render/march/gpu_march_params.h"
 #include "render/march/march_params.h"
@@ -9,6 +10,7 @@
 #include "render/photon/photon_params.h"
 #include "render/points/points_params.h"
 #include "render/slices/slices_params.h"
+#include "render/zonal/zonal_params.h"
 #include "schema/table.h"
 
 namespace gischt {
@@ -23,6 +25,8 @@ struct RenderParams {
     BillboardsParams billboards;
     SlicesParams slices;
     GpuMarchParams gpu_march;
+    ZonalParams zonal;
+    DiffusionParams diffusion;
 };
 
 const Table<RenderParams>& render_params_table();

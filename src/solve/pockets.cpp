@@ -60,6 +60,10 @@ class Parts {
         const Vec3i size = level_.map->cells_of(t).size();
         for (int v = 0; v < tile_values; ++v) {
             const Vec3i c = level_.shape().cell(v);
+            const int at = split_index(level_.shape(), c);
+            if (level_.block_of(t).extra[at / color_values][at % color_values] > 0) {
+                hold(node(t, c));
+            }
             for (int a = 0; a < level_.axes(); ++a) {
                 Vec3i next = c;
                 next[a] += 1;

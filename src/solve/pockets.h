@@ -7,9 +7,9 @@
 
 namespace gischt {
 
-// The connected parts of a level that nothing holds: no Fixed side and no shift. The operator is
-// singular on each of them, one constant per part. Tiles without cuts are connected as a whole, so
-// the search costs time for the cut tiles only.
+// The connected parts of a level that nothing holds: no Fixed side, no shift, no extra. The
+// operator is singular on each of them, one constant per part. Tiles without cuts are connected as
+// a whole, so the search costs time for the cut tiles only.
 class Pockets {
   public:
     Pockets() = default;

@@ -24,7 +24,8 @@ using SideRules = std::array<SideRule, 6>;
 
 // A symmetric operator on the cells of a box map:
 //   (A x)_c = e_c x_c + sum over the faces of w_f (x_c - x_n),
-// e_c = shift + extra_c >= 0, w_f the open fraction of the face, x_n = 0 beyond a Fixed side.
+// e_c = shift + extra_c >= 0, w_f >= 0 the open fraction of the face or any other conductance of it
+// (best near 1), x_n = 0 beyond a Fixed side.
 struct StencilSpec {
     TileMap::Ptr map;
     SideRules sides{};
