@@ -41,11 +41,35 @@ SpotLight::SpotLight(const Vec3d& position, const Vec3d& axis, const Vec3f& inte
 
 LightSample SpotLight::sample(const Vec3d& point, Vec2f) const {
     LightSample sample = towards_point(point, position_, intensity_);
-    const double cosine = -dot(sample.direction, axis_), width = cos_inner_ - cos_outer_;
-    const double share =
-        width > 0 ? smoothstep((cosine - cos_outer_) / width) : (cosine >= cos_outer_ ? 1.0 : 0.0);
-    sample.weight *= static_cast<float>(share);
+    sample.weight *= static_cast<float>(share(-dot(sample.direction, axis_)));
     return sample;
+}
+
+double SpotLight::share(double cosine) const {
+    const double width = cos_inner_ - cos_outer_;
+    return width > 0 ? smoothstep((cosine - cos_outer_) / width)
+                     : (cosine >= cos_outer_ ? 1.0 : 0.0);
+}
+
+// The integral of the smoothstep over the rim is x^3 (2 - x) / 2, inverted by halving.
+Vec3d SpotLight::direction(Vec2f u) const {
+    const double inner = 1 - cos_inner_, width = cos_inner_ - cos_outer_;
+    const double at = static_cast<double>(u.x) * (inner + 0.5 * width);
+    double cosine = 1 - at;
+    if (at > inner) {
+        const double inwards = 1 - (at - inner) / (0.5 * width);
+        double low = 0, high = 1;
+        for (int i = 0; i < 40; ++i) {
+            const double x = 0.5 * (low + high);
+            (x * x * x * (2 - x) < inwards ? low : high) = x;
+        }
+        cosine = cos_outer_ + 0.5 * (low + high) * width;
+    }
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)),
+                 turn = 2 * pi * static_cast<double>(u.y);
+    Vec3d s, t;
+    orthonormal_frame(axis_, s, t);
+    return cosine * axis_ + sine * (std::cos(turn) * s + std::sin(turn) * t);
 }
 
 Vec3f SpotLight::mean_radiance(const Vec3d& point) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/units.h"
 #include "optics/light.h"
 
 namespace gischt {
@@ -32,6 +33,13 @@ class SpotLight : public Light {
     // Half angles in radians, 0 <= inner <= outer <= pi; axis is a unit vector away from the light.
     SpotLight(const Vec3d& position, const Vec3d& axis, const Vec3f& intensity, double inner,
               double outer);
+
+    const Vec3d& axis() const { return axis_; }
+    // The share of the full intensity at a cosine from the axis, its integral over all directions
+    // (sr), and directions drawn in proportion to it.
+    double share(double cosine) const;
+    double solid_angle() const { return 2 * pi * (1 - 0.5 * (cos_inner_ + cos_outer_)); }
+    Vec3d direction(Vec2f u) const;
 
     LightSample sample(const Vec3d& point, Vec2f u) const override;
     float pdf(const Vec3d&, const Vec3d&) const override { return 0; }

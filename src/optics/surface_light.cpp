@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/units.h"
 #include "image/color.h"
@@ -29,6 +31,12 @@ LightSample towards(const Vec3d& from, const Vec3d& to, const Vec3f& emission, d
 }
 
 constexpr double over_sphere = 0.25 / pi;
+
+// What rounding may put a drawn point off its shape, with room for that of a ray that leaves it.
+double drawn_offset(const Vec3d& point, double size) {
+    constexpr double ulps = 64 * std::numeric_limits<double>::epsilon();
+    return ulps * (max_component(abs(point)) + size) + std::numeric_limits<double>::min();
+}
 
 // ---- A ball: directions in the cone that it fills, from inside all.
 class SphereLight : public SurfaceLight {
@@ -66,9 +74,17 @@ class SphereLight : public SurfaceLight {
         return LightPlace{sphere_.center, sphere_.radius};
     }
     double power() const override {
-        return 4 * pi * pi * sphere_.radius * sphere_.radius *
-               static_cast<double>(luminance(emission_));
+        return pi * area() * static_cast<double>(luminance(emission_));
     }
+    AreaPoint area_point(Vec2f u) const override {
+        const double z = 1 - 2 * static_cast<double>(u.x), turn = 2 * pi * static_cast<double>(u.y);
+        const double sine = std::sqrt(std::max(0.0, 1 - z * z));
+        const Vec3d n{sine * std::cos(turn), sine * std::sin(turn), z};
+        const Vec3d p = sphere_.center + sphere_.radius * n;
+        return {p, n, 0, drawn_offset(p, sphere_.radius)};
+    }
+    double area() const override { return 4 * pi * sphere_.radius * sphere_.radius; }
+    bool is_closed() const override { return true; }
 
   private:
     float cone_pdf(const Vec3d& from) const {
@@ -145,11 +161,24 @@ class FaceLight : public SurfaceLight {
         return LightPlace{0.5 * (box.lo + box.hi), 0.5 * length(box.size())};
     }
     double power() const override {
-        double area = 0;
-        for (const Face& f : faces_) area += f.area;
-        return pi * area * (both_sides_ && faces_.size() == 1 ? 2 : 1) *
+        return pi * area() * (both_sides_ && faces_.size() == 1 ? 2 : 1) *
                static_cast<double>(luminance(emission_));
     }
+    AreaPoint area_point(Vec2f u) const override {
+        double x = static_cast<double>(u.x) * area();
+        std::size_t i = 0;
+        while (i + 1 < faces_.size() && x >= faces_[i].area) x -= faces_[i++].area;
+        const Face& f = faces_[i];
+        const Vec3d p =
+            f.corner + std::min(x / f.area, 1.0) * f.edge_x + static_cast<double>(u.y) * f.edge_y;
+        return {p, f.normal, static_cast<int>(i), drawn_offset(p, length(f.edge_x + f.edge_y))};
+    }
+    double area() const override {
+        double sum = 0;
+        for (const Face& f : faces_) sum += f.area;
+        return sum;
+    }
+    bool is_closed() const override { return faces_.size() > 1; }
 
   private:
     // What a point sees of the faces: their weights in the choice.
@@ -236,9 +265,15 @@ class DiscLight : public SurfaceLight {
         return LightPlace{disc_.center, disc_.radius};
     }
     double power() const override {
-        return pi * pi * disc_.radius * disc_.radius * (both_sides_ ? 2 : 1) *
-               static_cast<double>(luminance(emission_));
+        return pi * area() * (both_sides_ ? 2 : 1) * static_cast<double>(luminance(emission_));
     }
+    AreaPoint area_point(Vec2f u) const override {
+        const double r = disc_.radius * std::sqrt(static_cast<double>(u.x)),
+                     turn = 2 * pi * static_cast<double>(u.y);
+        const Vec3d p = disc_.center + r * (std::cos(turn) * s_ + std::sin(turn) * t_);
+        return {p, disc_.normal, 0, drawn_offset(p, disc_.radius)};
+    }
+    double area() const override { return pi * disc_.radius * disc_.radius; }
 
   private:
     bool is_seen(const Vec3d& from) const {
@@ -292,10 +327,7 @@ class MeshLight : public SurfaceLight {
     }
 
     LightSample sample(const Vec3d& point, Vec2f u) const override {
-        const double area = static_cast<double>(u.x) * cumulative_.back();
-        const auto next = std::upper_bound(cumulative_.begin() + 1, cumulative_.end() - 1, area);
-        const auto i = static_cast<std::size_t>(next - cumulative_.begin()) - 1;
-        const double share = (area - cumulative_[i]) / (cumulative_[i + 1] - cumulative_[i]);
+        const auto [i, share] = triangle_at(static_cast<double>(u.x));
         const Vec2f v{std::clamp(static_cast<float>(share), 0.0f, 0x1.fffffep-1f), u.y};
         const auto [a, b, c] = corners(triangles_[i]);
         const Vec3d f = cross(b - a, c - a);
@@ -345,11 +377,27 @@ class MeshLight : public SurfaceLight {
     }
     std::optional<LightPlace> place() const override { return LightPlace{middle_, reach_}; }
     double power() const override {
-        return pi * cumulative_.back() * (both_sides_ ? 2 : 1) *
-               static_cast<double>(luminance(emission_));
+        return pi * area() * (both_sides_ ? 2 : 1) * static_cast<double>(luminance(emission_));
     }
+    AreaPoint area_point(Vec2f u) const override {
+        const auto [i, share] = triangle_at(static_cast<double>(u.x));
+        const auto [a, b, c] = corners(triangles_[i]);
+        const double r = std::sqrt(share), s = static_cast<double>(u.y);
+        const Vec3d p = (1 - r) * a + r * (1 - s) * b + r * s * c;
+        // The search tree has the corners in float.
+        const double offset = 1e-6 * (max_component(abs(p)) + reach_);
+        return {p, normalize(cross(b - a, c - a)), static_cast<int>(i), offset};
+    }
+    double area() const override { return cumulative_.back(); }
 
   private:
+    // The triangle for a number in [0,1), and what is left of it, in [0,1] again.
+    std::pair<std::size_t, double> triangle_at(double u) const {
+        const double at = u * cumulative_.back();
+        const auto next = std::upper_bound(cumulative_.begin() + 1, cumulative_.end() - 1, at);
+        const auto i = static_cast<std::size_t>(next - cumulative_.begin()) - 1;
+        return {i, (at - cumulative_[i]) / (cumulative_[i + 1] - cumulative_[i])};
+    }
     std::array<Vec3d, 3> corners(const Vec3i& t) const {
         return {points_[static_cast<std::size_t>(t.x)], points_[static_cast<std::size_t>(t.y)],
                 points_[static_cast<std::size_t>(t.z)]};

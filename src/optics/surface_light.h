@@ -24,6 +24,18 @@ class SurfaceLight : public Light {
     // W, over both sides where both shine.
     virtual double power() const = 0;
 
+    // A point drawn evenly over the area (that of one side), for u in [0,1)^2.
+    struct AreaPoint {
+        Vec3d point, normal;  // the normal points to the outer side
+        int primitive = 0;    // as in SurfaceHit
+        double offset = 0;    // as in SurfaceHit, m
+    };
+    virtual AreaPoint area_point(Vec2f u) const = 0;
+    virtual double area() const = 0;  // m^2, of one side
+    // It encloses a space, into which its inner side shines; power() leaves that out.
+    virtual bool is_closed() const { return false; }
+    const Vec3f& emission() const { return emission_; }
+
     Vec3f radiance(const Vec3d&) const override { return {}; }
     bool is_delta() const override { return false; }
     bool is_infinite() const override { return false; }
