@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "render/bdpt/bdpt.h"
 #include "render/billboards/billboards.h"
 #include "render/field/field.h"
 #include "render/march/gpu_march.h"
 #include "render/march/march.h"
+#include "render/mlt/mlt.h"
 #include "render/params.h"
 #include "render/path/path.h"
 #include "render/points/points.h"
@@ -17,7 +19,7 @@
 namespace gischt {
 namespace {
 
-constexpr std::array<MethodInfo, 7> methods{{
+constexpr std::array<MethodInfo, 9> methods{{
     {"field", field_simulates, field_leaves_out, field_cost,
      [](const RenderParams& p) { return make_field_method(p.field); }},
     {"points", points_simulates, points_leaves_out, points_cost,
@@ -32,6 +34,10 @@ constexpr std::array<MethodInfo, 7> methods{{
      [](const RenderParams& p) { return make_march_method(p.march); }},
     {"path", path_simulates, path_leaves_out, path_cost,
      [](const RenderParams& p) { return make_path_method(p.path); }},
+    {"bdpt", bdpt_simulates, bdpt_leaves_out, bdpt_cost,
+     [](const RenderParams& p) { return make_bdpt_method(p.bdpt); }},
+    {"mlt", mlt_simulates, mlt_leaves_out, mlt_cost,
+     [](const RenderParams& p) { return make_mlt_method(p.mlt); }},
 }};
 
 }  // namespace
@@ -43,6 +49,8 @@ const Table<RenderParams>& render_params_table() {
             .sub("field", &RenderParams::field, field_params_table(),
                  {.help = "Of the method 'field'"})
             .sub("path", &RenderParams::path, path_table(), {.help = "Of the method 'path'"})
+            .sub("bdpt", &RenderParams::bdpt, bdpt_table(), {.help = "Of the method 'bdpt'"})
+            .sub("mlt", &RenderParams::mlt, mlt_table(), {.help = "Of the method 'mlt'"})
             .sub("points", &RenderParams::points, points_table(),
                  {.help = "Of the method 'points'"})
             .sub("billboards", &RenderParams::billboards, billboards_table(),

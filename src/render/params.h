@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "render/bdpt/bdpt_params.h"
 #include "render/billboards/billboards_params.h"
 #include "render/field/field_params.h"
 #include "render/march/gpu_march_params.h"
 #include "render/march/march_params.h"
+#include "render/mlt/mlt_params.h"
 #include "render/path/path_params.h"
 #include "render/points/points_params.h"
 #include "render/slices/slices_params.h"
@@ -17,6 +19,8 @@ struct RenderParams {
     MarchParams march;
     FieldParams field;
     PathParams path;
+    BdptParams bdpt;
+    MltParams mlt;
     PointsParams points;
     BillboardsParams billboards;
     SlicesParams slices;

@@ -21,7 +21,8 @@ struct Field;  // grid/frame.h
 // A view made ready for path tracing.
 struct PathScene {
     // Throws Error{Usage} where the view asks for what the method cannot do.
-    PathScene(const View& the_view, const PathParams& the_params, Job& job);
+    // `meets_all`: the method finds lights without size behind glass.
+    PathScene(const View& the_view, const PathParams& the_params, Job& job, bool meets_all = false);
 
     const View& view;
     const PathParams& params;
