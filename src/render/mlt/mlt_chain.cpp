@@ -13,7 +13,7 @@ namespace {
 
 // Tracks of primary numbers: the choices, the numbers of the connection, and the two subpaths,
 // interleaved.
-enum : std::size_t { TrackChoices, TrackConnection, TrackCamera, TrackLight };
+enum : std::size_t { TrackChoices, TrackFilm, TrackConnection, TrackCamera, TrackLight };
 
 // Edges of a path beside those between its scatterings: turns into single directions, as many as
 // the path tracer takes.
@@ -48,7 +48,8 @@ MltPaths::MltPaths(const BdptScene& scene, const MltParams& params, int depth, d
 
 MltSample MltPaths::operator()(PrimaryNumbers& numbers) {
     if (cumulative_.empty()) return {};
-    TrackSource choices(numbers, TrackChoices, 0), connection(numbers, TrackConnection, 0);
+    TrackSource choices(numbers, TrackChoices, 0), film(numbers, TrackFilm, 0);
+    TrackSource connection(numbers, TrackConnection, 0);
     TrackSource camera(numbers, TrackCamera, 2), light(numbers, TrackLight, 2);
     const View& view = scene_.view;
 
@@ -66,8 +67,8 @@ MltSample MltPaths::operator()(PrimaryNumbers& numbers) {
 
     // Where on the film, and through which point of the lens.
     const double width = view.width() + 2 * margin_, height = view.height() + 2 * margin_;
-    const double x = static_cast<double>(choices.next()) * width - margin_,
-                 y = static_cast<double>(choices.next()) * height - margin_;
+    const double x = static_cast<double>(film.next()) * width - margin_,
+                 y = static_cast<double>(film.next()) * height - margin_;
     const float lens_x = choices.next();
     const Vec2f lens{lens_x, choices.next()};
 
@@ -138,7 +139,12 @@ std::vector<FilmSplat> run_chain(PrimaryNumbers numbers, std::uint64_t key, std:
     for (std::int64_t m = 0; m < mutations; ++m) {
         if (m % 256 == 0) job.check();
         const auto i = static_cast<std::uint32_t>(2 * m);
-        numbers.propose(static_cast<double>(random_uniform(choices, i)) < params.large_step);
+        const auto kind = static_cast<double>(random_uniform(choices, i));
+        if (kind < params.large_step + params.film_step && kind >= params.large_step) {
+            numbers.propose_track(TrackFilm);
+        } else {
+            numbers.propose(kind < params.large_step);
+        }
         const MltSample next = paths(numbers);
         const double accept =
             now.brightness > 0 ? std::min(1.0, next.brightness / now.brightness) : 1;

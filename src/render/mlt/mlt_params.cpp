@@ -15,6 +15,11 @@ const Table<MltParams>& mlt_table() {
                  .max = 65536})
             .add("large_step", &MltParams::large_step,
                  {.help = "Share of the mutations that take a path anew", .min = 0.001, .max = 1})
+            .add("film_step", &MltParams::film_step,
+                 {.help = "Share of the mutations that take only the place on the film anew, for "
+                          "light that comes by the same way everywhere",
+                  .min = 0,
+                  .max = 1})
             .add("sigma", &MltParams::sigma,
                  {.help = "Standard deviation by which the others move each random number",
                   .min = 0,
@@ -34,7 +39,12 @@ const Table<MltParams>& mlt_table() {
                      {"residual_ratio", TransmittanceEstimator::ResidualRatio},
                      {"march", TransmittanceEstimator::March},
                      {"exact", TransmittanceEstimator::Exact}},
-                    {.help = "How the transmittance between two points is estimated"});
+                    {.help = "How the transmittance between two points is estimated"})
+            .check([](const MltParams& p, const Fail& fail) {
+                if (p.large_step + p.film_step > 1) {
+                    fail("film_step", "and 'large_step' must not exceed 1 together");
+                }
+            });
     return table;
 }
 

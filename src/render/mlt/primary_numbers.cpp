@@ -11,9 +11,14 @@ PrimaryNumbers::PrimaryNumbers(std::uint64_t start) : start_(start), key_(start)
 
 void PrimaryNumbers::propose(bool is_large) {
     ++now_;
-    is_large_ = is_large;
+    only_ = every;
     kept_large_ = last_large_;
     if (is_large) last_large_ = now_;
+}
+
+void PrimaryNumbers::propose_track(std::size_t track) {
+    propose(false);
+    only_ = track;
 }
 
 void PrimaryNumbers::accept() {}
@@ -32,6 +37,15 @@ void PrimaryNumbers::reject() {
     --now_;
 }
 
+// Around [0, 1), by a normal number (Box & Muller 1958).
+float PrimaryNumbers::moved(float value, double sigma) {
+    const double u = 1 - static_cast<double>(draw()), turn = static_cast<double>(draw());
+    const double x =
+        static_cast<double>(value) + sigma * std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * turn);
+    const auto wrapped = static_cast<float>(x - std::floor(x));
+    return wrapped < 1 ? wrapped : 0.0f;
+}
+
 float PrimaryNumbers::at(std::size_t track, std::size_t place) {
     if (track >= tracks_.size()) tracks_.resize(track + 1);
     auto& numbers = tracks_[track];
@@ -41,38 +55,26 @@ float PrimaryNumbers::at(std::size_t track, std::size_t place) {
     Number before = n;
     // As of the last large step, or of the start.
     if (before.changed < last_large_) {
-        if (last_large_ == 0) {
-            before.value =
-                random_uniform(random_key(start_, track), static_cast<std::uint32_t>(place));
-        } else {
-            before.value = draw();
-        }
+        before.value = last_large_ > 0 ? draw()
+                                       : random_uniform(random_key(start_, track),
+                                                        static_cast<std::uint32_t>(place));
         before.changed = last_large_;
     }
-    // Small steps since then, which sum to one of sqrt(n) sigma (Box & Muller 1958).
-    if (const auto steps = static_cast<double>(now_ - before.changed); steps > 0) {
-        const bool is_owed = steps > 1;
-        const auto moved = [&](float value, double by) {
-            const double u = 1 - static_cast<double>(draw()), turn = static_cast<double>(draw());
-            double x = static_cast<double>(value) +
-                       by * sigma_ * std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * turn);
-            x -= std::floor(x);
-            const auto wrapped = static_cast<float>(x);
-            return wrapped < 1 ? wrapped : 0.0f;
-        };
-        // What it owes to accepted mutations stays should this one be rejected.
-        if (is_owed) {
-            before.value = moved(before.value, std::sqrt(steps - 1));
-            before.changed = now_ - 1;
-        }
-        n.kept = before.value;
-        n.kept_changed = before.changed;
-        n.value = moved(before.value, 1);
-    } else {
-        // A large step: what was here is kept as it was.
+    if (before.changed == now_) {
+        // New: should the proposal be rejected, what was here is still to be made up for.
         n.kept = n.value;
         n.kept_changed = n.changed;
         n.value = before.value;
+    } else {
+        // Small steps that were accepted since, which sum to one of sqrt(n) sigma; they stay.
+        if (const auto owed = static_cast<double>(now_ - 1 - before.changed); owed > 0) {
+            before.value = moved(before.value, std::sqrt(owed) * sigma_);
+        }
+        n.kept = before.value;
+        n.kept_changed = now_ - 1;
+        n.value = only_ == every   ? moved(before.value, sigma_)
+                  : only_ == track ? draw()
+                                   : before.value;
     }
     n.changed = now_;
     return n.value;

@@ -27,6 +27,8 @@ class PrimaryNumbers {
 
     // Proposes a next state: all numbers anew, or each moved a little. Then accept() or reject().
     void propose(bool is_large);
+    // Or the numbers of one track anew, and all others as they are.
+    void propose_track(std::size_t track);
     void accept();
     void reject();
 
@@ -38,6 +40,8 @@ class PrimaryNumbers {
         float value = 0, kept = 0;
         std::int64_t changed = -1, kept_changed = -1;  // the mutation up to which it is made
     };
+    static constexpr std::size_t every = ~std::size_t{0};
+    float moved(float value, double sigma);
     float draw() { return random_uniform(key_, drawn_++); }
 
     std::uint64_t start_ = 0, key_ = 0;
@@ -46,7 +50,7 @@ class PrimaryNumbers {
     std::int64_t now_ = 0;         // the mutation
     std::int64_t last_large_ = 0;  // that was accepted, or is proposed
     std::int64_t kept_large_ = 0;
-    bool is_large_ = true;
+    std::size_t only_ = every;  // the track that the proposal takes anew
     std::vector<std::vector<Number>> tracks_;
 };
 
