@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t most_samples = 1 << 24;  // of a pixel: what an ExactSum holds
 
-bool is_countable(const FilmSample& s, std::span<const float> extra) {
+bool can_count(const FilmSample& s, std::span<const float> extra) {
     auto fits = [](float v) { return ExactSum::fits(static_cast<double>(v)); };
     return fits(s.radiance.x) && fits(s.radiance.y) && fits(s.radiance.z) && fits(s.alpha) &&
            (fits(s.depth) || (std::isinf(s.depth) && s.depth > 0)) &&
@@ -46,7 +46,7 @@ void Film::add(int x, int y, const FilmSample& sample, std::span<const float> ex
     ++p.count;
     const double w = sample.weight;
     p.weight.add(w);
-    if (!is_countable(sample, extra)) {
+    if (!can_count(sample, extra)) {
         ++p.rejected;
         return;
     }
@@ -64,7 +64,46 @@ void Film::add(int x, int y, const FilmSample& sample, std::span<const float> ex
     for (std::size_t i = 0; i < extra.size(); ++i) sums[i].add(w * extra[i]);
 }
 
+// The integral of the filter by the midpoint rule, to about 1e-10.
+void Film::want_splats() {
+    if (has_splats()) return;
+    splats_.resize(3 * pixels_.size());
+    const double radius = filter_.radius();
+    constexpr int parts = 1 << 16;
+    double sum = 0;
+    for (int i = 0; i < parts; ++i) sum += filter_.profile((i + 0.5) / parts * radius);
+    const double line = 2 * sum * radius / parts;
+    splat_norm_ = 1 / (line * line);
+}
+
+bool Film::is_countable(const FilmSplat& splat) {
+    bool fits = std::abs(splat.at.x) < 1e6f && std::abs(splat.at.y) < 1e6f;
+    for (int c = 0; c < 3; ++c) {
+        fits = fits && ExactSum::fits(static_cast<double>(splat.value[c]));
+    }
+    return fits;
+}
+
+void Film::splat(const FilmSplat& splat) {
+    GISCHT_ASSERT(has_splats());
+    const double r = filter_.radius(), at_x = splat.at.x, at_y = splat.at.y;
+    // A pixel's footprint is half open, so that boxes of radius 1/2 share no point.
+    const auto first = [r](double x) { return static_cast<int>(std::floor(x - r - 0.5)) + 1; };
+    const auto last = [r](double x) { return static_cast<int>(std::floor(x + r - 0.5)); };
+    for (int y = std::max(first(at_y), 0); y <= std::min(last(at_y), height_ - 1); ++y) {
+        const double across = splat_norm_ * filter_.profile(std::abs(at_y - y - 0.5));
+        for (int x = std::max(first(at_x), 0); x <= std::min(last(at_x), width_ - 1); ++x) {
+            const double share = across * filter_.profile(std::abs(at_x - x - 0.5));
+            ExactSum* sums = splats_.data() + 3 * index(x, y);
+            for (int c = 0; c < 3; ++c) sums[c].add(share * static_cast<double>(splat.value[c]));
+        }
+    }
+}
+
 void Film::merge(const Film& other) {
+    if (other.has_splats() != has_splats()) {
+        throw Error(ErrorKind::Input, "film", "only one of the films has a layer of light paths");
+    }
     if (other.width_ != width_ || other.height_ != height_ || other.extra_names_ != extra_names_) {
         throw Error(ErrorKind::Input, "film",
                     fmt::format("cannot add {} x {} pixels to {} x {}, or their channels differ",
@@ -89,11 +128,15 @@ void Film::merge(const Film& other) {
         p.rejected += q.rejected;
     }
     for (std::size_t i = 0; i < extra_.size(); ++i) extra_[i].add(other.extra_[i]);
+    for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
+    light_paths_ += other.light_paths_;
 }
 
 void Film::clear() {
     pixels_.assign(pixels_.size(), FilmPixel{});
     extra_.assign(extra_.size(), ExactSum{});
+    splats_.assign(splats_.size(), ExactSum{});
+    light_paths_ = 0;
 }
 
 std::int64_t Film::total_samples() const {
@@ -165,14 +208,20 @@ Image Film::image() const {
     auto value = [&](std::size_t plane, std::size_t i) -> float& {
         return out.planes[plane].values[i];
     };
+    const double per_pixel =
+        light_paths_ > 0 ? static_cast<double>(pixels_.size()) / static_cast<double>(light_paths_)
+                         : 0;
     parallel_for(height_, 16, [&](int y) {
         for (int x = 0; x < width_; ++x) {
             const std::size_t i = index(x, y), extras = extra_names_.size();
             const FilmPixel& p = pixels_[i];
             const double scale = p.count > 0 ? 1 / divisor(p) : 0;
             for (int c = 0; c < 3; ++c) {
-                value(static_cast<std::size_t>(c), i) =
-                    static_cast<float>(p.radiance[c].value() * scale);
+                double mean = p.radiance[c].value() * scale;
+                if (has_splats()) {
+                    mean += splats_[3 * i + static_cast<std::size_t>(c)].value() * per_pixel;
+                }
+                value(static_cast<std::size_t>(c), i) = static_cast<float>(mean);
             }
             value(3, i) = static_cast<float>(p.alpha.value() * scale);
             value(4, i) = p.hits > 0 ? static_cast<float>(p.depth.value() / p.hits)

@@ -22,6 +22,13 @@ struct FilmSample {
     float weight = 1;                                      // of FilterSample
 };
 
+// Light that lands somewhere on the film. `value` is of one light path, divided by the number of
+// pixels: W/(m^2 sr) per pixel area.
+struct FilmSplat {
+    Vec2f at;  // pixels; may lie outside of the picture
+    Vec3f value;
+};
+
 // The sums of one pixel, all exact (math/exact_sum.h).
 struct FilmPixel {
     ExactSum radiance[3];        // of weight * value
@@ -42,6 +49,10 @@ struct FilmPixel {
 // Different pixels may be added to by different threads at once; one pixel by one thread at a time.
 // Range: |value| < 5e11 per sample, 2^24 samples per pixel; resolution 5e-20. About 160 bytes per
 // pixel and 16 per extra channel.
+//
+// Light that lands anywhere, not in the pixel that looked for it, is added by splat() to a layer of
+// its own: each pixel takes it by the filter around its centre, the footprint. The layer is divided
+// by the number of light paths per pixel, whether they reached the film or not. 48 bytes per pixel.
 class Film {
   public:
     // `extra` names further channels, such as "direct.R". Throws as Image does.
@@ -57,6 +68,16 @@ class Film {
     // `extra` holds one value per extra channel. A sample that is not a number or out of range
     // (infinite depth aside) counts as black and is reported by rejected().
     void add(int x, int y, const FilmSample& sample, std::span<const float> extra = {});
+    // The layer of splats; made by the first call.
+    bool has_splats() const { return !splats_.empty(); }
+    void want_splats();
+    // The value must be countable. One thread at a time, beside those that add().
+    void splat(const FilmSplat& splat);
+    static bool is_countable(const FilmSplat& splat);
+    // Counts light paths that have been followed.
+    void count_light_paths(std::int64_t paths) { light_paths_ += paths; }
+    std::int64_t light_paths() const { return light_paths_; }
+
     // Adds the samples of a film of the same size and channels. Throws Error{Input} otherwise, and
     // for more than 2^24 samples in a pixel.
     void merge(const Film& other);
@@ -84,6 +105,9 @@ class Film {
     // Sums of weight * value, for each pixel one per extra channel.
     std::span<const ExactSum> extra_sums() const { return extra_; }
     std::span<ExactSum> extra_sums() { return extra_; }
+    // Three for each pixel, or none.
+    std::span<const ExactSum> splat_sums() const { return splats_; }
+    std::span<ExactSum> splat_sums() { return splats_; }
 
   private:
     std::size_t index(int x, int y) const {
@@ -100,6 +124,9 @@ class Film {
     std::vector<std::string> extra_names_;
     std::vector<FilmPixel> pixels_;
     std::vector<ExactSum> extra_;
+    std::vector<ExactSum> splats_;
+    std::int64_t light_paths_ = 0;
+    double splat_norm_ = 1;  // one over the integral of the filter, 1/pixel^2
 };
 
 }  // namespace gischt

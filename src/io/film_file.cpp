@@ -140,8 +140,8 @@ void put_header(FilmWriter& out, const FilmState& state, const Metadata& metadat
     }
     out.u32(state.tile_goals.size());
     for (const std::int32_t goal : state.tile_goals) out.i32(goal);
-    out.number(
-        static_cast<std::uint8_t>((state.has_variance ? 1 : 0) | (state.has_samples ? 2 : 0)));
+    out.number(static_cast<std::uint8_t>(
+        (state.has_variance ? 1 : 0) | (state.has_samples ? 2 : 0) | (film.has_splats() ? 4 : 0)));
     out.u32(metadata.entries.size());
     for (const auto& [key, value] : metadata.entries) {
         out.text(key);
@@ -184,6 +184,7 @@ FilmFile get_header(FilmReader& in) {
     file.state.film.emplace(static_cast<int>(width), static_cast<int>(height),
                             ReconstructionFilter(static_cast<FilterKind>(kind), radius),
                             std::move(extra));
+    if ((flags & 4) != 0) file.state.film->want_splats();
     return file;
 }
 
@@ -198,6 +199,10 @@ void write_film(const std::string& path, const FilmState& state, const Metadata&
     for (std::size_t i = 0; i < film.pixels().size(); ++i) {
         put_pixel(out, film.pixels()[i]);
         for (const ExactSum& s : film.extra_sums().subspan(i * extras, extras)) out.sum(s.units());
+    }
+    if (film.has_splats()) {
+        out.number(static_cast<std::uint64_t>(film.light_paths()));
+        for (const ExactSum& s : film.splat_sums()) out.sum(s.units());
     }
     out.number(hash_bytes(out.bytes));
     file.write(std::span<const char>(out.bytes));
@@ -226,6 +231,12 @@ FilmFile read_film(const std::string& path) {
     for (std::size_t i = 0; i < film.pixels().size(); ++i) {
         get_pixel(in, film.pixels()[i]);
         for (ExactSum& s : film.extra_sums().subspan(i * extras, extras)) s.set_units(in.sum());
+    }
+    if (film.has_splats()) {
+        const auto paths = in.number<std::uint64_t>();
+        if (paths > std::uint64_t{1} << 62) in.fail("is a damaged film file");
+        film.count_light_paths(static_cast<std::int64_t>(paths));
+        for (ExactSum& s : film.splat_sums()) s.set_units(in.sum());
     }
     if (!in.rest.empty()) in.fail("is a damaged film file");
     return file;

@@ -20,6 +20,7 @@ namespace gischt {
 //   of the extra channels, each 128 bits, sign in the lowest bit, without the zero bytes at both
 //   ends: a byte (bytes left out at the low end << 4 | bytes that follow - 1) and these bytes, or
 //   255 for zero;
+//   where bit 2 of the flags is set: i64 light paths, and three sums of splats for each pixel;
 //   u64 FNV-1a of all that (base/hash.h).
 //
 // A 960x540 picture takes about 40 MB.

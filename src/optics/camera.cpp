@@ -198,6 +198,45 @@ std::optional<Vec2d> Camera::project(const Vec3d& point) const {
                  0.5 * height_ - scale * dot(d, middle_.up)};
 }
 
+std::optional<Camera::Sight> Camera::see(const Vec3d& point, Vec2f lens) const {
+    const Pose& p = middle_;
+    const bool perspective = projection_ == Projection::Perspective;
+    const double to_plane = 2 * p.scale / height_;
+    Vec3d from_middle;  // of the point of the lens
+    if (p.lens_radius > 0) {
+        const Vec2d at = aperture_point(lens, blades_, blade_rotation_);
+        from_middle = p.lens_radius * (at.x * p.right + at.y * p.up);
+    }
+    Sight sight;
+    sight.is_parallel = !perspective;
+    Vec3d offset;  // from the middle of the picture, where the film plane is
+    if (perspective) {
+        sight.origin = p.position + from_middle;
+        const Vec3d way = point - sight.origin;
+        const double depth = dot(way, p.forward);
+        if (!(depth > 0)) return std::nullopt;
+        sight.distance = length(way);
+        sight.direction = way / sight.distance;
+        // Where the ray meets the plane at depth 1, or the plane in focus, seen from the middle.
+        offset = way / depth;
+        if (p.lens_radius > 0) offset += from_middle / p.focus_distance;
+        const double cosine = depth / sight.distance;
+        sight.density = 1 / (to_plane * to_plane * cosine * cosine * cosine);
+    } else {
+        sight.direction =
+            p.lens_radius > 0 ? normalize(p.focus_distance * p.forward - from_middle) : p.forward;
+        const double cosine = dot(sight.direction, p.forward);
+        sight.distance = dot(point - p.position, p.forward) / cosine;
+        if (!(sight.distance > 0)) return std::nullopt;
+        sight.origin = point - sight.distance * sight.direction;
+        offset = sight.origin - from_middle - p.position;
+        sight.density = 1 / (to_plane * to_plane * cosine);
+    }
+    sight.film = {0.5 * width_ + dot(offset, p.right) / to_plane,
+                  0.5 * height_ - dot(offset, p.up) / to_plane};
+    return sight;
+}
+
 double Camera::pixel_size(double depth) const {
     const double size = 2 * middle_.scale / height_;
     return projection_ == Projection::Perspective ? size * depth : size;

@@ -67,6 +67,19 @@ class Camera {
     // Where a point appears, in pixels, at the middle of the shutter's time and through the middle
     // of the lens; nothing behind a perspective camera.
     std::optional<Vec2d> project(const Vec3d& point) const;
+    // How a point in space is seen through the point `lens` of the aperture, in the middle of the
+    // shutter's time: the inverse of ray(). Nothing behind a perspective camera.
+    struct Sight {
+        Vec2d film;           // pixels; may lie outside of the picture
+        Vec3d origin;         // of the ray
+        Vec3d direction;      // of the ray, unit
+        double distance = 0;  // along it, metres
+        // Film area per solid angle at the origin, pixels/sr; where all rays through `lens` are
+        // parallel (is_parallel) per area across the direction, pixels/m^2.
+        double density = 0;
+        bool is_parallel = false;
+    };
+    std::optional<Sight> see(const Vec3d& point, Vec2f lens = {0.5f, 0.5f}) const;
     // Edge of a pixel in metres at a depth along the view axis, at the picture's centre.
     double pixel_size(double depth) const;
 

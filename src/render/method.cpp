@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "render/bdpt/bdpt.h"
 #include "render/billboards/billboards.h"
 #include "render/diffusion/diffusion.h"
 #include "render/field/field.h"
 #include "render/march/gpu_march.h"
 #include "render/march/march.h"
+#include "render/mlt/mlt.h"
 #include "render/params.h"
 #include "render/path/path.h"
 #include "render/photon/photon.h"
@@ -40,6 +42,10 @@ constexpr MethodInfo methods[] = {
      [](const RenderParams& p) { return make_zonal_method(p.zonal); }},
     {"path", path_simulates, path_leaves_out, path_cost,
      [](const RenderParams& p) { return make_path_method(p.path); }},
+    {"bdpt", bdpt_simulates, bdpt_leaves_out, bdpt_cost,
+     [](const RenderParams& p) { return make_bdpt_method(p.bdpt); }},
+    {"mlt", mlt_simulates, mlt_leaves_out, mlt_cost,
+     [](const RenderParams& p) { return make_mlt_method(p.mlt); }},
 };
 
 }  // namespace
@@ -53,6 +59,8 @@ const Table<RenderParams>& render_params_table() {
             .sub("path", &RenderParams::path, path_table(), {.help = "Of the method 'path'"})
             .sub("photon", &RenderParams::photon, photon_table(),
                  {.help = "Of the method 'photon'"})
+            .sub("bdpt", &RenderParams::bdpt, bdpt_table(), {.help = "Of the method 'bdpt'"})
+            .sub("mlt", &RenderParams::mlt, mlt_table(), {.help = "Of the method 'mlt'"})
             .sub("points", &RenderParams::points, points_table(),
                  {.help = "Of the method 'points'"})
             .sub("billboards", &RenderParams::billboards, billboards_table(),

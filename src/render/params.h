@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "render/bdpt/bdpt_params.h"
 #include "render/billboards/billboards_params.h"
 #include "render/diffusion/diffusion_params.h"
 #include "render/field/field_params.h"
 #include "render/march/gpu_march_params.h"
 #include "render/march/march_params.h"
+#include "render/mlt/mlt_params.h"
 #include "render/path/path_params.h"
 #include "render/photon/photon_params.h"
 #include "render/points/points_params.h"
@@ -21,6 +23,8 @@ struct RenderParams {
     FieldParams field;
     PathParams path;
     PhotonParams photon;
+    BdptParams bdpt;
+    MltParams mlt;
     PointsParams points;
     BillboardsParams billboards;
     SlicesParams slices;

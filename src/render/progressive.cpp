@@ -95,6 +95,7 @@ class Progression {
 
   private:
     Film& film() { return *state_.film; }
+    bool has_splats() const { return task_.has_light_paths || task_.paint; }
 
     // Makes the film, or checks that the one there can be gone on with.
     void open_film() {
@@ -104,15 +105,16 @@ class Progression {
         state_.has_samples = task_.layout.samples;
         if (!state_.film) {
             state_.film.emplace(view_.width(), view_.height(), filter, task_.layout.channels);
+            if (has_splats()) film().want_splats();
             state_.ranges.clear();
             goals().assign(tiles_.count(), 1);
             return;
         }
         const Film& old = film();
-        const bool fits = old.width() == view_.width() && old.height() == view_.height() &&
-                          old.filter().kind() == filter.kind() &&
-                          old.filter().radius() == filter.radius() &&
-                          old.extra_names() == task_.layout.channels;
+        const bool fits =
+            old.width() == view_.width() && old.height() == view_.height() &&
+            old.filter().kind() == filter.kind() && old.filter().radius() == filter.radius() &&
+            old.extra_names() == task_.layout.channels && old.has_splats() == has_splats();
         const bool is_one_run =
             state_.ranges.empty() ||
             (state_.ranges.size() == 1 && state_.ranges[0].begin == settings_.first_sample);
@@ -123,7 +125,10 @@ class Progression {
             fail(holds + ", with gaps or not from the first one on");
         if (most_samples() > settings_.samples_per_pixel) fail(holds + ", more than asked for");
         for (auto& goal : goals()) goal = std::clamp(goal, 1, settings_.samples_per_pixel);
+        if (task_.paint) note_painted();
     }
+    // How many indices of samples the film's light paths are of.
+    void note_painted() { painted_ = static_cast<int>(film().light_paths() / task_.painted_paths); }
     [[noreturn]] static void fail(const std::string& what) {
         throw Error(ErrorKind::Usage, "film", "cannot go on with the film: " + what,
                     "--restart throws it away");
@@ -193,10 +198,22 @@ class Progression {
             work_until(std::min({next_partial_, next_checkpoint_, stop}));
             note_range();
             job_.check();
-            if (pending_.empty()) return true;
+            if (pending_.empty() && !paints(stop)) return true;
             if (now_seconds() >= stop) return false;
             show_and_save();
         }
+    }
+
+    // Paints what belongs to the next index of samples; false when all are painted.
+    bool paints(double stop) {
+        if (!task_.paint || painted_ >= goal() || now_seconds() >= stop) return false;
+        const auto painting =
+            task_.paint(static_cast<std::uint32_t>(settings_.first_sample + painted_));
+        for (const auto& splats : painting) {
+            for (const FilmSplat& s : splats) film().splat(s);
+        }
+        film().count_light_paths(task_.painted_paths);
+        return ++painted_ < goal();
     }
 
     void show_and_save() {
@@ -242,6 +259,7 @@ class Progression {
         const PixelTile area = tiles_.at(number);
         const std::int64_t tile_goal = goals()[static_cast<std::size_t>(number)];
         std::vector<float> extra(task_.layout.channels.size());
+        LightLanded landed;
         std::int64_t taken = 0;
         bool whole = true;
         for (int y = area.y0; y < area.y1 && whole; ++y) {
@@ -250,15 +268,43 @@ class Progression {
                 for (auto s = film().samples(x, y); s < tile_goal && whole; ++s, ++taken) {
                     // One sample may take long.
                     whole = !job_.is_cancelled() && now_seconds() < pause;
-                    if (whole) pixel(worker, x, y, static_cast<int>(s), extra);
+                    if (whole) pixel(worker, x, y, static_cast<int>(s), extra, landed);
                 }
             }
         }
+        put_down(landed);
         report(taken);
         return whole;
     }
 
-    void pixel(PixelWorker& worker, int x, int y, int sample, std::vector<float>& extra) {
+    // What light paths have left, until it is put on the film.
+    struct LightLanded {
+        std::vector<FilmSplat> splats;
+        std::int64_t paths = 0;
+    };
+    void put_down(LightLanded& landed) {
+        if (landed.paths == 0) return;
+        const std::scoped_lock lock(splat_mutex_);
+        for (const FilmSplat& s : landed.splats) film().splat(s);
+        film().count_light_paths(landed.paths);
+        landed.splats.clear();
+        landed.paths = 0;
+    }
+    void land(PixelWorker& worker, FilmSample& out, LightLanded& landed) {
+        if (!task_.has_light_paths) return;
+        const bool counts =
+            std::all_of(worker.splats.begin(), worker.splats.end(), Film::is_countable);
+        if (!counts) out.radiance = Vec3f(std::numeric_limits<float>::quiet_NaN());
+        if (counts) {
+            landed.splats.insert(landed.splats.end(), worker.splats.begin(), worker.splats.end());
+        }
+        ++landed.paths;
+        constexpr std::size_t many = 1 << 14;
+        if (landed.splats.size() > many) put_down(landed);
+    }
+
+    void pixel(PixelWorker& worker, int x, int y, int sample, std::vector<float>& extra,
+               LightLanded& landed) {
         PixelSample at;
         at.x = x;
         at.y = y;
@@ -276,7 +322,9 @@ class Progression {
 
         FilmSample out;
         std::fill(extra.begin(), extra.end(), 0.0f);
+        worker.splats.clear();
         worker.sample(at, out, extra);
+        land(worker, out, landed);
         out.weight = place.weight;
         film().add(x, y, out, extra);
     }
@@ -319,9 +367,11 @@ class Progression {
     CoarseOrder order_;
     int edge_ = 1;  // of the blocks of which one pixel is taken
     double start_, next_partial_, next_checkpoint_, stop_;  // of now_seconds()
-    std::vector<int> pending_;                              // tiles of this pass that are not done
-    std::atomic<std::int64_t> taken_{0};                    // samples, for the progress
-    std::atomic<double> least_done_{0};                     // what the noise says of it
+    std::mutex splat_mutex_;
+    int painted_ = 0;                     // indices of samples
+    std::vector<int> pending_;            // tiles of this pass that are not done
+    std::atomic<std::int64_t> taken_{0};  // samples, for the progress
+    std::atomic<double> least_done_{0};   // what the noise says of it
 };
 
 }  // namespace

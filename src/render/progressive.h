@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "image/film.h"
 #include "math/pixel_sampler.h"
@@ -41,6 +42,9 @@ class PixelWorker {
     // value per channel of the task's layout, all 0 when it comes.
     virtual void sample(const PixelSample& at, FilmSample& out, std::span<float> extra) = 0;
 
+    // Light of the sample's light path that lands elsewhere; empty when it comes.
+    std::vector<FilmSplat> splats;
+
     std::int64_t rays = 0, lookups = 0;  // for the statistics
 };
 
@@ -56,6 +60,13 @@ struct ProgressiveTask {
     // the picture is left out early then. Null: nothing of the kind.
     std::function<void(int n)> prepare;
     int group = 1;
+
+    // The film gets a layer of splats, and each sample of a pixel has a light path.
+    bool has_light_paths = false;
+    // In place of these: light of `painted_paths` paths all over the picture, countable, in any
+    // number of parts. Called once for each index of samples, in their order, one at a time.
+    std::function<std::vector<std::vector<FilmSplat>>(std::uint32_t index)> paint;
+    std::int64_t painted_paths = 1;
 };
 
 // Renders the samples [first_sample, first_sample + samples_per_pixel) of every pixel of the view,

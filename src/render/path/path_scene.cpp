@@ -31,7 +31,7 @@ double spacing_of(const Medium& medium, std::int64_t most) {
 
 }  // namespace
 
-PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& job, bool by_chance)
+PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& job, bool meets_all)
     : view(the_view), params(the_params) {
     if (view.media.size() > most_media) {
         throw Error(ErrorKind::Usage, "path", fmt::format("{} media", view.media.size()),
@@ -62,7 +62,7 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
     for (const Drawn& d : local) {
         if (d.light->place()) placed.push_back(d.light);
     }
-    if (by_chance) refuse_what_none_can_meet();
+    if (!meets_all) refuse_what_none_can_meet();
 }
 
 // A light without size behind glass: no shadow ray passes the glass, and no random walk meets it.

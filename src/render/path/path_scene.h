@@ -20,9 +20,9 @@ struct Field;  // grid/frame.h
 
 // A view made ready for path tracing.
 struct PathScene {
-    // Throws Error{Usage} where the view asks for what the method cannot do. `by_chance`: what
-    // shadow rays do not reach is left to chance, and what chance cannot meet is refused.
-    PathScene(const View& the_view, const PathParams& the_params, Job& job, bool by_chance = true);
+    // Throws Error{Usage} where the view asks for what the method cannot do.
+    // `meets_all`: the method finds lights without size behind glass.
+    PathScene(const View& the_view, const PathParams& the_params, Job& job, bool meets_all = false);
 
     const View& view;
     const PathParams& params;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/random.h"
@@ -8,6 +9,15 @@
 #include "math/vec.h"
 
 namespace gischt {
+
+// Where numbers come from that are not drawn but proposed, such as those of a Markov chain.
+class NumberSource {
+  public:
+    virtual ~NumberSource() = default;
+    virtual float next() = 0;  // in [0, 1)
+    // A new part of the path; what comes does not depend on how many numbers the last one took.
+    virtual void begin(std::size_t part) = 0;
+};
 
 // The random numbers of a path, a pure function of its keys: a stream without end, and stratified
 // ones for the first turns and flights, which matter most.
@@ -17,12 +27,17 @@ struct RandomStream {
     PixelSampler sampler = {};
     std::uint32_t dimension = last_leading;  // the next stratified one
     static constexpr std::uint32_t last_leading = 10;
+    NumberSource* source = nullptr;  // takes the place of all that
 
     // Another stream for something that happens at this point.
     RandomStream branch(std::uint64_t name) const { return {random_key(key, count, name)}; }
 
-    float next() { return random_uniform(key, count++); }
+    float next() { return source ? source->next() : random_uniform(key, count++); }
     Vec2f two() {
+        if (source) {
+            const float first = source->next();
+            return {first, source->next()};
+        }
         const std::uint64_t bits = mix64(key + 0x9e3779b97f4a7c15ULL * ++count);
         return {static_cast<float>(bits >> 40) * 0x1p-24f,
                 static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24f};

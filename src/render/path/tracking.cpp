@@ -23,16 +23,6 @@ float with_floor(const MediaRun& run, bool is_emissive) {
     return std::max(run.max, 1 / static_cast<float>(run.t1 - run.t0));
 }
 
-Vec3f emission_of(const MediaRun& run, double t) {
-    Vec3f sum;
-    for (const ActiveMedium& a : run.active) {
-        if (a.segment.emission_max == 0) continue;
-        const auto at = static_cast<float>(t - a.segment.anchor);
-        sum += a.medium->emission_at(a.segment, at, a.medium->density_at(a.segment, at));
-    }
-    return sum;
-}
-
 Vec3f color_of(const ActiveMedium& a, double t) {
     if (!a.medium->has_color()) return Vec3f(1);
     return a.medium->color_at(a.segment, static_cast<float>(t - a.segment.anchor), a.density(t));
@@ -46,6 +36,19 @@ Vec3f extinction_at(const MediaRun& run, double t) {
         sum += a.density(t) * a.medium->cross_sections().extinction();
     }
     return sum;
+}
+
+// Adds the emission at t of all media.
+void Tracker::meet_glow(const MediaRun& run, double t, const Vec3f& weight, Vec3f& emission) {
+    Vec3f sum;
+    for (const ActiveMedium& a : run.active) {
+        if (a.segment.emission_max == 0) continue;
+        const auto at = static_cast<float>(t - a.segment.anchor);
+        const Vec3f one = a.medium->emission_at(a.segment, at, a.medium->density_at(a.segment, at));
+        sum += one;
+        if (glows && max_component(one) > 0) glows->push_back({t, a.index, weight * one});
+    }
+    emission += weight * sum;
 }
 
 // Whether a tentative collision is a real one, and with which medium: `u` is uniform in [0, 1). The
@@ -112,7 +115,7 @@ bool Tracker::fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& ra
             t += static_cast<double>(depth_to_go / majorant);
             depth_to_go = exponential(random.next());
             if (emission && is_emissive) {
-                *emission += weight.value() * emission_of(run, t) * (1 / majorant);
+                meet_glow(run, t, weight.value() * (1 / majorant), *emission);
             }
             if (choose_medium(run, t, hero, majorant, random.next(), weight, end)) return true;
         }
@@ -147,8 +150,8 @@ bool Tracker::fly_by_cells(const MediaRun& run, double t, int hero, PathWeight& 
             if (place < s) {
                 Vec3f depth = depth_within_cell(run, cell, place, lookups);
                 if (depth[hero] > depth_to_go) depth *= depth_to_go / depth[hero];
-                *emission += cell.length * pass(weight, depth).value() *
-                             emission_of(run, cell.t + static_cast<double>(place));
+                meet_glow(run, cell.t + static_cast<double>(place),
+                          cell.length * pass(weight, depth).value(), *emission);
             }
         }
         if (!collides) {

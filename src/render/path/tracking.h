@@ -20,6 +20,13 @@ struct Collision {
     Vec3f color{1, 1, 1};    // of its scattering there
 };
 
+// Emission that a flight met.
+struct GlowOnWay {
+    double t = 0;
+    std::size_t medium = 0;  // index in the list of media
+    Vec3f radiance;          // times the weight, W/(m^2 sr)
+};
+
 // What trackers read and count. One per thread.
 struct Tracker {
     std::span<const Medium* const> media;
@@ -35,9 +42,10 @@ struct Tracker {
     // leaves the media, or reaches t_max, first. The weight takes what depends on the channel; the
     // albedo stays for the caller (see scatter()). `hero` is the channel that decides. Emission on
     // the way is added to `emission`, where given, times the weight (in W/(m^2 sr)): the estimate
-    // e / majorant at every tentative collision.
+    // e / majorant at every tentative collision. Where `glows` is set, each is noted there too.
     bool fly(const Ray& ray, int hero, PathWeight& weight, RandomStream& random, Collision& end,
              Vec3f* emission = nullptr);
+    std::vector<GlowOnWay>* glows = nullptr;
 
     // Transmittance along a ray of unit direction up to t_max per channel, unbiased (the exact one
     // deterministic), with the estimator asked for.
@@ -47,6 +55,7 @@ struct Tracker {
     Vec3f exact_depth(const Ray& ray);
 
   private:
+    void meet_glow(const MediaRun& run, double t, const Vec3f& weight, Vec3f& emission);
     bool fly_by_cells(const MediaRun& run, double t, int hero, PathWeight& weight,
                       RandomStream& random, Collision& end, Vec3f* emission);
     bool choose_medium(const MediaRun& run, double t, int hero, float majorant, float u,

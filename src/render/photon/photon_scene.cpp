@@ -32,7 +32,7 @@ PhotonScene::PhotonScene(const View& the_view, const PhotonParams& the_params,
     : view(the_view),
       params(the_params),
       depth(the_depth),
-      path(the_view, path_params, job, false),
+      path(the_view, path_params, job, true),
       reach(Box3d::empty()) {
     refuse_what_it_cannot();
     for (const auto& m : view.media) media.push_back(m.get());
