@@ -24,8 +24,6 @@ enum : std::uint32_t {
     DimensionStream = 1000
 };
 
-constexpr std::uint32_t most_seen_mirrors = 64;  // as in walk.cpp
-
 RandomStream stream_of(const PixelSampler& sampler, std::uint32_t branch) {
     return {sampler.stream_key(DimensionStream + branch), 0, sampler, DimensionTurn};
 }
@@ -99,6 +97,7 @@ void PathTracer::see(Leg leg, const PixelSampler& sampler) {
 
 // Paths go on from the surface that the camera sees, several where it scatters evenly.
 void PathTracer::see_surface(const Leg& leg, const SurfaceHit& hit, const PixelSampler& sampler) {
+    if (gather_ && see_both_ways(leg, hit, stream_of(sampler, 1))) return;
     const bool is_even = scene_.view.surfaces.info(hit.surface).material == MaterialKind::Lambert;
     const int splits = is_even ? scene_.params.surface_splits : 1;
     const std::optional<InteriorStack> inside = inside_;
@@ -114,8 +113,7 @@ void PathTracer::see_surface(const Leg& leg, const SurfaceHit& hit, const PixelS
         if (scatter_at_surface(next, hit, random)) {
             // In a mirror everything is gathered as it is when seen at once.
             if (gather_ && next.events == 0) {
-                see(next,
-                    sampler_.part(most_seen_mirrors + 1, static_cast<std::uint32_t>(next.mirrors)));
+                see(next, numbers_behind(next));
             } else {
                 follow(next, random);
             }
@@ -223,19 +221,6 @@ void PathTracer::note_first(float share, const Scatterer& at, const Vec3f& albed
     result_.opacity += share;
     result_.albedo += share * albedo;
     result_.normal += share * normal;
-}
-
-void PathTracer::gather_along(const Leg& leg, const RayProfile& profile,
-                              const RandomStream& random) {
-    const EyeGather::Light light = gather_->along(leg.ray, profile, tracker_.media, random);
-    deposit(leg.weight.value() * light.once, 1);
-    deposit(leg.weight.value() * light.more, 2);
-}
-
-void PathTracer::gather_at(const Leg& leg, const SurfaceHit& hit, const Bsdf& bsdf) {
-    const EyeGather::Light light = gather_->at(hit, bsdf, -leg.ray.direction);
-    deposit(leg.weight.value() * light.once, 1);
-    deposit(leg.weight.value() * light.more, 2);
 }
 
 // From half a frame before the view's time to half a frame after it, in pixels.

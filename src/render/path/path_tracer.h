@@ -108,6 +108,8 @@ class PathTracer {
 
     void see(Leg leg, const PixelSampler& sampler);
     void see_surface(const Leg& leg, const SurfaceHit& hit, const PixelSampler& sampler);
+    bool see_both_ways(const Leg& leg, const SurfaceHit& hit, RandomStream random);
+    PixelSampler numbers_behind(const Leg& leg) const;
     void see_through(const Leg& leg, const PixelSampler& sampler);
     float profile_share(double t) const;
     void see_places(const Leg& leg, const PixelSampler& sampler);
