@@ -23,8 +23,6 @@ TEST(DiffusionCube, GatheredFacesAreThoseOfPathTracing) {
         Job job;
         const auto source = light_by_diffusion(view, {Vec3d(-0.5), Vec3d(0.5)}, params, job);
         const CubeFaces got = gathered_faces(view, *source, 1 << 14);
-        fmt::print("diffusion tau {}: {} {} {}\n", r.thickness, got.lit / r.mean.lit,
-                   got.back / r.mean.back, got.side / r.mean.side);
         expect_faces(got, r.mean, 0.10, fmt::format("tau {}", r.thickness));
     }
 }
