@@ -94,11 +94,23 @@ class Channel {
         return 2 * diffusion_[i] * diffusion_[j] / (diffusion_[i] + diffusion_[j]);
     }
     // phi = z F n / D at a face half a cell away, z being the distance at which phi would vanish
-    // beyond it: F = (phi + 3/2 h moment n) times this.
-    double leak(std::size_t i) const {
+    // beyond it: F = (phi + 3/2 h moment n) times this. Steps of cells around a round medium have
+    // |n_x| + |n_y| + |n_z| times its area, so they let out as much less.
+    double leak(const Vec3i& c, std::size_t i) const {
         const double z =
             extrapolation / static_cast<double>(problem_.transport_extinction[i][channel_]);
-        return diffusion_[i] / (z + 0.5 * h_);
+        return diffusion_[i] / (z + 0.5 * h_) * area_share(c);
+    }
+    double area_share(const Vec3i& c) const {
+        Vec3d n;
+        for (int o = 0; o < 27; ++o) {
+            const Vec3i way(o % 3 - 1, o / 3 % 3 - 1, o / 9 - 1), q = c + way;
+            if (min_component(q) < 0 || min_component(grid_.cells - q) < 1) continue;
+            n += static_cast<double>(problem_.transport_extinction[grid_.index(q)][channel_]) *
+                 Vec3d(way);
+        }
+        const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+        return sum > 0 ? length(n) / sum : 1;
     }
 
     void assemble(FaceField& weight, TileField<float>& extra, TileField<float>& right) const {
@@ -111,8 +123,8 @@ class Channel {
                     const double way = end == 0 ? -1 : 1;
                     const std::size_t j = beyond(c, i, a, end);
                     if (j == i) {
-                        held += h_ * leak(i);
-                        source -= h_ * 1.5 * h_ * way * moment(i, a) * leak(i);
+                        held += h_ * leak(c, i);
+                        source -= h_ * 1.5 * h_ * way * moment(i, a) * leak(c, i);
                         continue;
                     }
                     source -= h_ * 1.5 * between(i, j) * way * (moment(i, a) + moment(j, a));
@@ -133,7 +145,7 @@ class Channel {
         const auto phi = [&](std::size_t k) {
             return static_cast<double>(light.fluence[k][channel_]);
         };
-        if (j == i) return (phi(i) + 1.5 * h_ * way * moment(i, axis)) * leak(i);
+        if (j == i) return (phi(i) + 1.5 * h_ * way * moment(i, axis)) * leak(c, i);
         return between(i, j) *
                ((phi(i) - phi(j)) / h_ + 1.5 * way * (moment(i, axis) + moment(j, axis)));
     }

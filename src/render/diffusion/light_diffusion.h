@@ -26,14 +26,14 @@ struct DiffuseLight {
 };
 
 // div F + a phi = power, F = -D grad phi + 3 D moment (Stam 1995, "Multiple scattering as a
-// diffusion process"), with D = (2 a + s') / (3 (a + s')^2), s' = s (1 - g), whose decay in the depth
-// of a medium is nearly that of transport where plain 1 / (3 (a + s')) is too fast (Grosjean 1956;
-// d'Eon & Irving 2011, "A quantized-diffusion model"). Where the medium ends no light comes in: phi
-// would vanish 0.7104 free paths beyond, as in Milne's problem (Hopf 1934; Marshak 1947 has 2/3). It
-// ends at the sides of the box and at cells thinner than 1e-3 of a free path, in which the light is
-// not looked for: they get the mean of those around, so that it may be interpolated. Conjugate
-// gradients with the multigrid preconditioner of the pressure; throws Error{Usage} when that does
-// not converge, Error{Cancelled}.
+// diffusion process"), with D = (2 a + s') / (3 (a + s')^2), s' = s (1 - g), whose decay in the
+// depth of a medium is nearly that of transport where plain 1 / (3 (a + s')) is too fast (Grosjean
+// 1956; d'Eon & Irving 2011, "A quantized-diffusion model"). Where the medium ends no light comes
+// in: phi would vanish 0.7104 free paths beyond, as in Milne's problem (Hopf 1934; Marshak 1947 has
+// 2/3). It ends at the sides of the box and at cells thinner than 1e-3 of a free path, in which the
+// light is not looked for: they get the mean of those around, so that it may be interpolated.
+// Conjugate gradients with the multigrid preconditioner of the pressure; throws Error{Usage} when
+// that does not converge, Error{Cancelled}.
 DiffuseLight diffuse_light(const DiffusionProblem& problem, double tolerance, Job& job);
 
 }  // namespace gischt

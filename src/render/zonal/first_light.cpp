@@ -22,6 +22,14 @@ Vec3d FirstLight::place(int i) {
     return {part(0.5 + n / g), part(0.5 + n / (g * g)), part(0.5 + n / (g * g * g))};
 }
 
+// The first surface that a ray meets shows its inside there.
+bool FirstLight::is_inside_solid(const Vec3d& point) const {
+    if (view_.surfaces.is_empty()) return false;
+    // No axis of the scene, so that edges of boxes are not met.
+    const auto hit = view_.surfaces.intersect({point, normalize(Vec3d{0.3190, 0.5241, 0.7897})});
+    return hit && !hit->front && !view_.surfaces.info(hit->surface).is_sheet;
+}
+
 Vec3f FirstLight::sample(std::size_t light, Ray ray, int i, Vec3d& direction) const {
     const Vec2f u = sobol_2d(static_cast<std::uint32_t>(i), 77 + static_cast<std::uint32_t>(light));
     const LightSample s = lights_[light]->sample(ray.origin, u);
@@ -55,7 +63,6 @@ std::vector<Vec3f> FirstLight::mean_radiance(Job& job) const {
     parallel_for(static_cast<int>(mean.size()), 64, [&](int i) {
         const auto zone = static_cast<std::size_t>(i);
         if (i % 64 == 0) job.check();
-        if (!(max_component(grid_.scattering[zone]) > 0)) return;
         for_zone(zone, [&](const Vec3d&, const Vec3f& weight) {
             mean[zone] += static_cast<float>(0.25 / pi) * weight;
         });

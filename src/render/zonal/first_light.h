@@ -20,18 +20,23 @@ class FirstLight {
     FirstLight(const View& view, const ZoneGrid& grid, int samples);
 
     // Calls add(direction, weight) for samples of the light at a zone: the sum of weight *
-    // f(direction) is the zone's mean of the integral over the directions to the lights of radiance
-    // times f, weight in W/m^2.
+    // f(direction) is the mean over the zone, as far as it lies outside of solids, of the integral
+    // over the directions to the lights of radiance times f; weight in W/m^2.
     template <class F>
     void for_zone(std::size_t zone, F&& add) const {
         const Vec3d corner = grid_.box.lo + Vec3d(grid_.cell(zone)) * grid_.cell_size();
+        int outside = 0;
+        for (int i = 0; i < samples_; ++i) {
+            outside += is_inside_solid(corner + place(i) * grid_.cell_size()) ? 0 : 1;
+        }
         for (int i = 0; i < samples_; ++i) {
             const Vec3d point = corner + place(i) * grid_.cell_size();
+            if (outside < samples_ && is_inside_solid(point)) continue;
             for (std::size_t l = 0; l < lights_.size(); ++l) {
                 Vec3d direction;
                 const Vec3f weight = sample(l, {point, {}}, i, direction);
                 if (max_component(weight) > 0) {
-                    add(direction, weight / Vec3f(static_cast<float>(samples_)));
+                    add(direction, weight / Vec3f(static_cast<float>(outside)));
                 }
             }
         }
@@ -46,6 +51,7 @@ class FirstLight {
   private:
     // Radiance over density, times transmittance; 0 where blocked. The ray's origin is given.
     Vec3f sample(std::size_t light, Ray ray, int i, Vec3d& direction) const;
+    bool is_inside_solid(const Vec3d& point) const;
     // Point i of those of each zone, in [0,1)^3.
     static Vec3d place(int i);
 

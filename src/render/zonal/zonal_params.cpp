@@ -26,7 +26,7 @@ const Table<ZonalParams>& zonal_table() {
                           "where the extinction has colours",
                   .min = 1})
             .add("lines", &ZonalParams::lines,
-                 {.help = "Lines that start at each zone's face on the sides; some four times as "
+                 {.help = "Lines that start at each zone's face on the sides; some six times as "
                           "many pass each zone",
                   .min = 4,
                   .max = 65536})

@@ -25,11 +25,12 @@ Vec3f PatchInterpolation::operator()(const SurfaceHit& hit, std::span<const Vec3
     Vec3f sum;
     double weights = 0;
     SurfaceHit at = hit;
-    for (int o = 0; o < 27; ++o) {
-        const Vec3i c = middle + Vec3i(o % 3 - 1, o / 3 % 3 - 1, o / 9 - 1);
+    for (int o = 0; o < 125; ++o) {
+        const Vec3i c = middle + Vec3i(o % 5 - 2, o / 5 % 5 - 2, o / 25 - 2);
         if (min_component(c) < 0 || min_component(grid.cells - c) < 1) continue;
         at.point = grid.box.lo + (Vec3d(c) + Vec3d(0.5)) * h;
         for (int way = 0; way < 6; ++way) {
+            if (hit.normal[way / 2] * (way % 2 != 0 ? 1 : -1) < -0.3) continue;
             at.normal = {};
             at.normal[way / 2] = way % 2 != 0 ? 1 : -1;
             const auto found = enclosure_.patch_of_key.find(enclosure_.patch_key(at));
@@ -38,8 +39,9 @@ Vec3f PatchInterpolation::operator()(const SurfaceHit& hit, std::span<const Vec3
             const SurfacePatch& p = enclosure_.patches[i];
             double weight = std::max(dot(p.normal, hit.normal), 0.0) * p.hits;
             for (int a = 0; a < 3; ++a) {
-                const double off = (p.center[a] - hit.point[a]) / (1.5 * h[a]);
-                weight *= std::max(1 - off * off, 0.0);
+                const double off = (p.center[a] - hit.point[a]) / (2 * h[a]);
+                const double near = std::max(1 - off * off, 0.0);
+                weight *= near * near;
             }
             sum += static_cast<float>(weight) * values[i];
             weights += weight;

@@ -128,7 +128,9 @@ Equilibrium by_relaxation(const ZoneSweep& sweep, std::span<const Vec3f> s,
                 double sum = static_cast<double>(b[e][c] - g[i] * y[i]);
                 for (const float v : lane) sum += static_cast<double>(v);
                 for (std::size_t j = even; j < n; ++j) sum += static_cast<double>(g[j] * y[j]);
-                const double x = sum / static_cast<double>(measure[e] - g[i] * s[e][c]);
+                // No line passes a zone inside of a solid.
+                const double own = static_cast<double>(measure[e] - g[i] * s[e][c]);
+                const double x = own > 0 ? sum / own : 0;
                 const double weight = static_cast<double>(measure[e] * s[e][c]);
                 const double off = x - static_cast<double>(result.x[e][c]);
                 change += weight * off * off;
