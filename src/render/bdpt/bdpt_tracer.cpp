@@ -211,7 +211,7 @@ Vec3f BdptTracer::from_light(const PathVertex& v, std::size_t t, const DrawnLigh
     const double part = share({1, t, 0, way.through, &end, radiance}, all.sampled, all.sum());
     radiance *= static_cast<float>(part);
     if (!is_spared(radiance, random)) return {};
-    return radiance * tracer_.transmittance(v, ray, random);
+    return radiance * tracer_.transmittance(v, ray, way, random);
 }
 
 // ---- s >= 2, t >= 2: connections.
@@ -251,7 +251,7 @@ Vec3f BdptTracer::connected(std::size_t s, std::size_t t, RandomStream& random) 
     radiance *= static_cast<float>(
         share({s, t, 0, passage.through, nullptr, radiance}, own, own + nearer + farther));
     if (!is_spared(radiance, random)) return {};
-    return radiance * tracer_.transmittance(z, ray, random);
+    return radiance * tracer_.transmittance(z, ray, passage, random);
 }
 
 // ---- t = 1: onto the film.
@@ -285,7 +285,7 @@ FilmSplat BdptTracer::splatted(std::size_t s, Vec2f lens, RandomStream& random) 
         share({s, 1, 0, passage.through, nullptr, radiance}, own, own + farther));
     if (!is_spared(radiance, random)) return {};
     return {{static_cast<float>(film.x), static_cast<float>(film.y)},
-            radiance * tracer_.transmittance(y, ray, random)};
+            radiance * tracer_.transmittance(y, ray, passage, random)};
 }
 
 // ----

@@ -271,6 +271,7 @@ SubpathTracer::Passage SubpathTracer::passage(const PathVertex& v, const Ray& ra
             p.is_open = true;
             return p;
         }
+        p.has_boundaries = true;
         cross(*hit);
         rest = leaving_ray(*hit, ray.direction);
         rest.t_max = end - hit->t;
@@ -278,11 +279,14 @@ SubpathTracer::Passage SubpathTracer::passage(const PathVertex& v, const Ray& ra
     return p;
 }
 
-Vec3f SubpathTracer::transmittance(const PathVertex& v, const Ray& ray, RandomStream& random) {
+Vec3f SubpathTracer::transmittance(const PathVertex& v, const Ray& ray, const Passage& passage,
+                                   RandomStream& random) {
     enter(v.inside);
-    if (!inside_) return tracker_.transmittance(ray, scene_.params.shadow, random);
-    // From boundary to boundary, each stretch in its own medium.
     if (v.hit && dot(ray.direction, v.hit->normal) < 0) cross(*v.hit);
+    if (!passage.has_boundaries) {
+        return tracker_.transmittance(ray, scene_.params.shadow, random);
+    }
+    // From boundary to boundary, each stretch in its own medium.
     Ray rest = ray;
     Vec3f product(1);
     for (int i = 0; i < most_boundaries; ++i) {

@@ -69,12 +69,14 @@ class SubpathTracer {
     // to its t_max; with `target` (a surface) up to that surface, which is then told in `reached`.
     struct Passage {
         bool is_open = false;
+        bool has_boundaries = false;        // that change the medium on the way
         double through = 1;                 // about the transmittance; for weights
         std::optional<SurfaceHit> reached;  // the target
     };
     Passage passage(const PathVertex& v, const Ray& ray, RayKind kind, int target = -1);
     // The transmittance of an open passage up to ray.t_max, unbiased.
-    Vec3f transmittance(const PathVertex& v, const Ray& ray, RandomStream& random);
+    Vec3f transmittance(const PathVertex& v, const Ray& ray, const Passage& passage,
+                        RandomStream& random);
 
     // The ray from a vertex in a direction.
     static Ray leave(const PathVertex& v, const Vec3d& direction);

@@ -15,7 +15,7 @@ namespace {
 BdptParams bdpt_params_of(const MltParams& params) {
     BdptParams p;
     p.shadow = params.shadow;
-    p.roulette = p.connection = 0;
+    p.connection = 0;
     return p;
 }
 

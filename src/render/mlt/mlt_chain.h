@@ -12,34 +12,50 @@
 
 namespace gischt {
 
-// What a state of a chain brings.
+// What a path brings that one of the strategies makes of primary numbers.
 struct MltSample {
-    FilmSplat splat;        // of the path over the density of its primary numbers
-    double brightness = 0;  // luminance of that
+    std::size_t s = 0, t = 0;  // vertices from the light and from the camera
+    FilmSplat splat;           // the path over the density of its numbers
+    double brightness = 0;     // luminance of that
 };
 
-// Paths by multiplexed primary-sample-space Metropolis light transport (Hachisuka, Kaplanyan,
-// Dachsbacher 2014): a state holds the number of edges k of a path, which of its k + 1 strategies
-// of bidirectional path tracing makes it, and the numbers for both subpaths. Its target is the
-// luminance of that one contribution, weighed by multiple importance sampling, so that strategies
-// are taken as often as they are worth.
+// Paths of multiplexed primary-sample-space Metropolis light transport (after Hachisuka, Kaplanyan,
+// Dachsbacher 2014): a state is a strategy (s, t) of bidirectional path tracing and the numbers of
+// both subpaths; its target is the luminance of that one contribution, weighed by multiple
+// importance sampling, so that strategies are taken as often as they are worth. The same numbers
+// make the contributions of all strategies, which serve to start anew.
 class MltPaths {
   public:
     // `margin`: pixels around the picture in which splats still count.
     MltPaths(const BdptScene& scene, const MltParams& params, int depth, double margin);
 
-    MltSample operator()(PrimaryNumbers& numbers);
+    // One strategy; brightness 0 where it makes no path.
+    MltSample one(PrimaryNumbers& numbers, std::size_t s, std::size_t t);
+    // All strategies that make one, and the sum of their brightness.
+    double all(PrimaryNumbers& numbers, std::vector<MltSample>& samples);
+
+    // The track of the place on the film.
+    static constexpr std::size_t film_track = 1;
 
     std::int64_t rays() const { return tracer_.rays(); }
     std::int64_t lookups() const { return tracer_.lookups(); }
 
   private:
+    // Where on the film, through which point of the lens, in which channel.
+    struct Aim {
+        double x = 0, y = 0;
+        Vec2f lens;
+        int hero = 0;
+    };
+    Aim aim(PrimaryNumbers& numbers) const;
+    void trace(PrimaryNumbers& numbers, const Aim& aim, std::size_t s, std::size_t t);
+    MltSample contribution(PrimaryNumbers& numbers, const Aim& aim, std::size_t s, std::size_t t);
+    bool is_wanted(std::size_t s, std::size_t t) const;
+
     const BdptScene& scene_;
-    const MltParams& params_;
     double margin_;
     BdptTracer tracer_;
-    std::size_t least_ = 2;
-    std::vector<double> cumulative_;  // over the numbers of edges from least_ on
+    std::size_t least_vertices_ = 3;
 };
 
 // One round: as many mutations as `mutations`, by independent chains that start at paths drawn in

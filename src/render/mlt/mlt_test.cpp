@@ -89,7 +89,7 @@ TEST(Mlt, HasTheMeanOfPath) {
     MltParams params;
     params.chains = 2;
     params.bootstrap = 2;
-    expect_agreement(params, 16, 64);
+    expect_agreement(params, 16, 32);
 }
 TEST(MltLong, HasTheMeanOfPath) {
     MltParams params;
@@ -103,7 +103,7 @@ TEST(Mlt, HasNoBiasOfTheStart) {
     MltParams params;
     params.chains = 64;
     params.bootstrap = 1;
-    expect_agreement(params, 8, 96);
+    expect_agreement(params, 8, 40);
 }
 
 TEST(Mlt, IsTheSameOnAnyNumberOfThreads) {

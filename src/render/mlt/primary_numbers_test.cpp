@@ -15,11 +15,16 @@ TEST(PrimaryNumbers, ComeBackWhenAProposalIsRejected) {
     for (std::size_t i = 0; i < 20; ++i) before.push_back(numbers.at(i % 3, i));
     numbers.mutate_by(7, 0.05);
     for (int m = 0; m < 40; ++m) {
-        numbers.propose(m % 3 == 0);
+        if (m % 5 == 1) {
+            numbers.propose_track(1);
+        } else {
+            numbers.propose(m % 3 == 0);
+        }
         int moved = 0;
         for (std::size_t i = 0; i < 20; i += 2) moved += numbers.at(i % 3, i) != before[i];
         numbers.reject();
-        EXPECT_EQ(moved, 10);
+        // Every other number lies in each of three tracks: 3 in the second.
+        EXPECT_EQ(moved, m % 5 == 1 ? 3 : 10) << m;
     }
     for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(numbers.at(i % 3, i), before[i]) << i;
 }
