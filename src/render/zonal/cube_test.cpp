@@ -69,7 +69,7 @@ TEST(ZonalCubeLong, FacesLeaveWhatPathTracingSays) {
     }
 }
 
-// Where the reference comes from: 4 million paths per face. It is met within what chance allows.
+// Where the reference comes from: 0.5 million paths per face. It is met within what chance allows.
 TEST(ZonalCubeLong, ReferenceIsThatOfPathTracing) {
     for (const CubeReference& r : cube_references) {
         const View view = lit_cube(r.thickness);
