@@ -54,6 +54,7 @@ bool PathTracer::see_both_ways(const Leg& leg, const SurfaceHit& hit, RandomStre
         next.weight.weight = leg.weight.weight * way->weight * share;
         next.ray = leaving_ray(hit, way->direction);
         next.pdf = 0;
+        next.start = leg.start * share;  // not weak by chance
         ++next.mirrors;
         if (goes_through) cross(hit);
         see(next, numbers_behind(next));

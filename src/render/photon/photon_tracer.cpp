@@ -13,7 +13,8 @@ namespace gischt {
 static constexpr int most_photon_mirrors = 64;      // delta scatterings of one photon
 static constexpr int most_photon_boundaries = 256;  // passed on one flight
 
-PhotonTracer::PhotonTracer(const PhotonScene& scene) : scene_(scene) {
+PhotonTracer::PhotonTracer(const PhotonScene& scene, float kept_share)
+    : scene_(scene), kept_share_(kept_share) {
     tracker_.is_grey = scene.path.is_grey;
 }
 
@@ -115,9 +116,10 @@ bool PhotonTracer::survives(const Vec3f& before) {
     return true;
 }
 
-void PhotonTracer::keep(std::vector<Photon>& out, const Vec3d& point, int place, int events) const {
+void PhotonTracer::keep(std::vector<Photon>& out, const Vec3d& point, int place, int events) {
     const auto n = static_cast<float>(inside_ ? inside_->ior() : 1);
-    const Vec3f power = weight_.value() * (1 / (n * n));
+    if (kept_share_ < 1 && random_.next() >= kept_share_) return;
+    const Vec3f power = weight_.value() * (1 / (n * n * kept_share_));
     if (!(max_component(power) > 0)) return;
     out.push_back({Vec3f(point - scene_.origin), Vec3f(ray_.direction), power, place, events});
 }
@@ -166,14 +168,15 @@ void append(PhotonSet& all, const PhotonSet& part) {
     all.on_surfaces.insert(all.on_surfaces.end(), part.on_surfaces.begin(), part.on_surfaces.end());
 }
 
-void trace_some(const PhotonScene& scene, std::int64_t count, bool aims, std::uint64_t key,
+void trace_some(const PhotonScene& scene, const PhotonCount& all, bool aims, std::uint64_t key,
                 PhotonSet& out, Job& job) {
+    const std::int64_t count = aims ? all.aimed : all.everywhere;
     const LightEmission& emission = aims ? *scene.aimed : *scene.everywhere;
     const float share = 1 / static_cast<float>(count);
     const auto chunks = static_cast<int>((count + chunk - 1) / chunk);
     std::vector<PhotonSet> parts(static_cast<std::size_t>(chunks));
     parallel_ranges(chunks, 1, [&](int begin, int end) {
-        PhotonTracer tracer(scene);
+        PhotonTracer tracer(scene, all.kept_share);
         for (int c = begin; c < end && !job.is_cancelled(); ++c) {
             const std::int64_t first = std::int64_t{c} * chunk,
                                last = std::min(first + chunk, count);
@@ -196,30 +199,34 @@ void trace_some(const PhotonScene& scene, std::int64_t count, bool aims, std::ui
 PhotonSet trace_with_key(const PhotonScene& scene, const PhotonCount& count, std::uint64_t key,
                          Job& job) {
     PhotonSet all;
-    if (count.aimed > 0) trace_some(scene, count.aimed, true, random_key(key, 1), all, job);
+    if (count.aimed > 0) trace_some(scene, count, true, random_key(key, 1), all, job);
     if (count.everywhere > 0) {
-        trace_some(scene, count.everywhere, false, random_key(key, 2), all, job);
+        trace_some(scene, count, false, random_key(key, 2), all, job);
     }
     return all;
 }
 
 PhotonCount split(const PhotonScene& scene, std::int64_t count) {
-    if (!scene.aimed) return {count, 0};
+    if (!scene.aimed) return {count, 0, 1};
     const auto aimed = static_cast<std::int64_t>(scene.params.aim * static_cast<double>(count));
-    return {count - aimed, aimed};
+    return {count - aimed, aimed, 1};
 }
 
 }  // namespace
 
 PhotonCount count_photons(const PhotonScene& scene, std::uint64_t seed, Job& job) {
     constexpr std::int64_t trial = 16'384;
-    // For each photon kept so many are sent out at most: beyond, their ways take all the time.
-    constexpr double most_per_kept = 8;
-    const std::size_t kept =
-        trace_with_key(scene, split(scene, trial), random_key(seed, 0), job).size();
-    const double sent = static_cast<double>(trial) / std::max(1.0, static_cast<double>(kept));
-    const double count = static_cast<double>(scene.params.photons) * std::min(sent, most_per_kept);
-    return split(scene, std::max(std::int64_t{64}, static_cast<std::int64_t>(count)));
+    // For each photon kept so many are sent out at most: beyond, their ways take all the time. And
+    // so many places of each are kept on average at most.
+    constexpr double most_per_kept = 8, most_places = 16;
+    const double kept = static_cast<double>(
+        trace_with_key(scene, split(scene, trial), random_key(seed, 0), job).size());
+    const double places = kept / static_cast<double>(trial);
+    const double sent = 1 / std::clamp(places, 1 / most_per_kept, most_places);
+    const double count = static_cast<double>(scene.params.photons) * sent;
+    PhotonCount out = split(scene, std::max(std::int64_t{64}, static_cast<std::int64_t>(count)));
+    if (places > most_places) out.kept_share = static_cast<float>(most_places / places);
+    return out;
 }
 
 PhotonSet trace_photons(const PhotonScene& scene, const PhotonCount& count, std::uint64_t seed,

@@ -24,7 +24,8 @@ struct PhotonSet {
 // Keeps scratch memory, so one per thread.
 class PhotonTracer {
   public:
-    explicit PhotonTracer(const PhotonScene& scene);
+    // Keeps this share of its places, drawn by chance, with so much more power.
+    PhotonTracer(const PhotonScene& scene, float kept_share);
 
     // Follows light that has just left its source, its power times `share`.
     void follow(const EmittedLight& light, float share, RandomStream random, PhotonSet& out);
@@ -41,9 +42,10 @@ class PhotonTracer {
     bool passes(const SurfaceHit& hit) const;
     // Light that comes straight from its source is found in other ways.
     bool is_kept(int events) const { return events > 1 || mirrors_ > 0; }
-    void keep(std::vector<Photon>& out, const Vec3d& point, int place, int events) const;
+    void keep(std::vector<Photon>& out, const Vec3d& point, int place, int events);
 
     const PhotonScene& scene_;
+    float kept_share_;
     Tracker tracker_;
     PhotonSet* out_ = nullptr;
     RandomStream random_;
@@ -54,13 +56,15 @@ class PhotonTracer {
     const Medium* interior_ = nullptr;
 };
 
-// How many photons are sent out for a map.
+// How many photons are sent out for a map, and which share of their places is kept.
 struct PhotonCount {
     std::int64_t everywhere = 0, aimed = 0;
+    float kept_share = 1;
     std::int64_t sum() const { return everywhere + aimed; }
 };
 
-// So many that about params.photons are kept, found by a trial.
+// So many that about params.photons are kept, found by a trial. Of a photon that is scattered very
+// often not every place is kept: they are too much alike.
 PhotonCount count_photons(const PhotonScene& scene, std::uint64_t seed, Job& job);
 
 // The photons of map number `pass`. Bits: a function of the scene, the count, seed and pass alone.

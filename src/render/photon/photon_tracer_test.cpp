@@ -30,17 +30,18 @@ Vec3d power_of(const std::vector<Photon>& photons) {
 // per channel. The first is left to direct light.
 TEST(PhotonTracer, CarriesThePowerOfItsSource) {
     View view;
-    const Vec3d albedo{0.5, 0.7, 0.9};
+    const Vec3d albedo{0.5, 0.9, 0.98};
     view.media = {solid(Region::sphere({1, 2, 3}, 60), coefficients({0.5, 1, 2}, albedo, 0.3))};
     view.lights = {point_light({1, 2, 3}, {1, 2, 3})};
     Mapped mapped(view, kept(20'000), 10'000);
+    EXPECT_LT(mapped.count.kept_share, 1);  // so often are these scattered
     const Estimate got = estimate(32, [&](int batch) {
         return power_of(trace_photons(mapped.scene, mapped.count, 5, batch, mapped.job).in_media);
     });
     for (int c = 0; c < 3; ++c) {
         const double truth = 4 * pi * (c + 1) * albedo[c] * albedo[c] / (1 - albedo[c]);
         expect_mean(got, c, truth, 6, "volume");
-        EXPECT_LT(got.error[c], 0.02 * truth);
+        EXPECT_LT(got.error[c], 0.03 * truth);
     }
     // And none after the last one.
     Mapped shallow(view, kept(20'000), 3);
