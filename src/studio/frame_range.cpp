@@ -36,6 +36,12 @@ FrameRange parse_frame_range(std::string_view text) {
         throw Error(ErrorKind::Usage, "--frames", fmt::format("'{}' is no range of frames", text),
                     "write A-B, A-BxSTEP or A with 0 <= A <= B and STEP >= 1");
     }
+    constexpr int most_frames = 100'000'000;  // 48 days at 24 frames per second
+    if (range.last >= most_frames) {
+        throw Error(ErrorKind::Usage, "--frames",
+                    fmt::format("frame {} is beyond the last possible one", range.last),
+                    fmt::format("frames go up to {}", most_frames - 1));
+    }
     return range;
 }
 
