@@ -259,6 +259,23 @@ void add_merge(CLI::App& app, CommandContext& context) {
     });
 }
 
+// gischt denoise A.exr -o B
+void add_denoise(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<DenoiseOptions>();
+    CLI::App* sub =
+        app.add_subcommand("denoise", "Take the noise out of an .exr that has the layer variance");
+    sub->add_option("A", options->from, "An .exr rendered with film.aovs=[\"variance\"]")
+        ->required();
+    sub->add_option("-o,--output", options->to, "Picture (.exr, .png, .hdr)")
+        ->required()
+        ->type_name("IMAGE");
+    sub->add_option("--exposure", options->exposure, "Brightness of a .png in stops")
+        ->type_name("EV");
+    sub->callback([options, &context] {
+        context.action = [options, &context] { return denoise_image(*options, context); };
+    });
+}
+
 // gischt convert A -o B
 void add_convert(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<ConvertOptions>();
@@ -346,6 +363,7 @@ std::optional<int> parse(int argc, char** argv, CommandContext& context) {
     add_info(app, context);
     add_merge(app, context);
     add_convert(app, context);
+    add_denoise(app, context);
     add_compare(app, context);
     add_scenes(app, context);
     add_doc(app, context);

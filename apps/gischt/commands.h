@@ -21,6 +21,10 @@ struct CompareOptions {
     std::string a, b;
     std::optional<double> tolerance;  // of the RMSE
 };
+struct DenoiseOptions {
+    std::string from, to;
+    double exposure = 0;  // stops, of a .png
+};
 struct ConvertOptions {
     std::string from, to;
     std::string frames;    // of patterns
@@ -56,6 +60,7 @@ int check_scene(const SceneOptions& options, CommandContext& context);
 int open_window(const SceneOptions& options, const CommandContext& context);
 int print_info(const std::string& target, Job& job);
 int merge_films(const MergeOptions& options, const std::string& command);
+int denoise_image(const DenoiseOptions& options, CommandContext& context);
 int convert_volume(const ConvertOptions& options, CommandContext& context);
 int compare_images(const CompareOptions& options);
 int print_scenes(const std::string& name);

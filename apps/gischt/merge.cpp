@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "commands.h"
+#include "image/denoise.h"
 #include "io/image_file.h"
 #include "studio/film_keeper.h"
 
@@ -35,6 +36,7 @@ void write_merged(const std::string& path, const FilmFile& film) {
     image.metadata = film.metadata;
     image.metadata.set("samples", fmt::format("{}", static_cast<double>(f.total_samples()) /
                                                         static_cast<double>(image.pixel_count())));
+    if (film.metadata.get("denoise") == "true") denoise(image);
     WriteOptions options;
     if (const std::string tone = film.metadata.get("tone"); !tone.empty())
         options.display.tone = tone_kind(tone);

@@ -84,7 +84,10 @@ const Table<FilmParams>& film_table() {
             .add("aovs", &P::aovs,
                  {.help = "Further layers of an EXR: direct, indirect, emission, albedo, normal, "
                           "motion, transmittance, variance, samples; \"all\" for those that the "
-                          "method has"});
+                          "method has"})
+            .add("denoise", &P::denoise,
+                 {.help = "Take the noise out of finished pictures; an EXR keeps the noisy one in "
+                          "the layer noisy. For methods that know the variance: path, march"});
     return table;
 }
 

@@ -59,6 +59,7 @@ struct FilmParams {
     double filter_radius = 0;  // pixels; 0: the filter's own
     double shutter = 0;        // share of a frame that the film is exposed, centred on its moment
     std::vector<std::string> aovs;  // further layers of an EXR, see render/aov.h
+    bool denoise = false;           // see image/denoise.h
 };
 
 struct RenderSection {

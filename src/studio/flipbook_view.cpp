@@ -39,6 +39,7 @@ Scene sprite_scene(const Scene& scene, Vec2i cell) {
     sprite.film.height = cell.y;
     sprite.film.shutter = 0;
     sprite.film.aovs.clear();
+    sprite.film.denoise = false;
     return sprite;
 }
 

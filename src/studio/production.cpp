@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "image/denoise.h"
 #include "io/image_file.h"
 #include "io/mp4.h"
 #include "studio/film_keeper.h"
@@ -135,6 +136,7 @@ RenderSettings settings_of(const Scene& scene, const Order& order) {
     s.preview = order.preview;
     s.adaptive = order.adaptive;
     s.aovs = scene.film.aovs;
+    if (scene.film.denoise) s.aovs.emplace_back("variance");
     return s;
 }
 
@@ -158,6 +160,7 @@ Metadata film_metadata(const LoadedScene& scene, const Order& order, Metadata m)
     m.set("preview", order.preview ? "true" : "false");
     m.set("tone", tone_name(scene.scene.film.tone));
     m.set("exposure", fmt::format("{}", scene.scene.film.exposure));
+    if (scene.scene.film.denoise) m.set("denoise", "true");
     return m;
 }
 
@@ -175,6 +178,16 @@ RenderResult render_with(const LoadedScene& scene, const View& view, RenderSetti
     }
     films.finish(scene.scene.render.method);
     for (const auto& [key, value] : metadata.entries) result.image.metadata.set(key, value);
+    if (scene.scene.film.denoise) {
+        const PhaseTimer denoising(job, "denoise");
+        if (!result.image.has("variance.Y")) {
+            throw Error(ErrorKind::Usage, "film.denoise",
+                        fmt::format("method '{}' does not know the variance of its pictures",
+                                    scene.scene.render.method),
+                        "take path or march, or turn it off");
+        }
+        denoise(result.image);
+    }
     return result;
 }
 
