@@ -35,7 +35,8 @@ TEST(BuiltinScenes, AllAreValidAndDescribed) {
     for (const BuiltinScene& b : builtin_scenes()) {
         const LoadedScene s = load_scene(b.name, "", {});
         EXPECT_FALSE(s.scene.description.empty()) << b.name;
-        EXPECT_FALSE(s.scene.fluids.empty() && s.scene.media.empty()) << b.name;
+        EXPECT_FALSE(s.scene.fluids.empty() && s.scene.media.empty() && s.scene.solids.empty())
+            << b.name;
         for (const FluidSection& f : s.scene.fluids) EXPECT_NE(make_source(s.scene, f), nullptr);
     }
 }
