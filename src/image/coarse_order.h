@@ -28,7 +28,7 @@ class CoarseOrder {
         return {(x & ~(edge - 1)) | (h & 7 & (edge - 1)),
                 (y & ~(edge - 1)) | (h >> 3 & (edge - 1))};
     }
-    bool is_first(int x, int y, int edge) const { return first_of(x, y, edge) == Vec2i(x, y); }
+    bool is_first(int x, int y, int edge) const { return first_of(x, y, edge) == Vec2i{x, y}; }
 
   private:
     int width_, height_;

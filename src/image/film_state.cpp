@@ -42,12 +42,12 @@ void fill_holes(const Film& film, Image& image) {
     const CoarseOrder order(film.width(), film.height());
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
-            Vec2i source(x, y);
+            Vec2i source{x, y};
             for (int edge = 2; film.samples(source.x, source.y) == 0; edge *= 2) {
                 if (edge > CoarseOrder::coarsest) break;
                 source = order.first_of(x, y, edge);
             }
-            if (source == Vec2i(x, y)) continue;
+            if (source == Vec2i{x, y}) continue;
             for (auto& plane : image.planes) {
                 plane.values[image.index(x, y)] = plane.values[image.index(source.x, source.y)];
             }
