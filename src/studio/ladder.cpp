@@ -13,6 +13,8 @@ namespace gischt {
 namespace {
 
 constexpr std::string_view shows_no_light = "field";
+// Methods that follow light once.
+constexpr std::string_view single_scattering[] = {"points", "billboards", "slices", "gpu_march"};
 
 // Of the whole process, all threads.
 double cpu_seconds() {
@@ -98,6 +100,7 @@ std::vector<LadderRung> ladder_rungs(const std::vector<std::string>& methods, in
     std::vector<LadderRung> rungs;
     for (const std::string& name : names) {
         std::vector<int> depths{depth};
+        if (std::ranges::find(single_scattering, name) != std::end(single_scattering)) depths = {1};
         if (name == "march") {
             depths = {1, 2, 3};
             std::erase_if(depths, [depth](int d) { return d > depth; });

@@ -81,11 +81,11 @@ Image thumb(const Image& image) {
 
 // What a method leaves out, at a depth.
 std::string left_out(const LadderRung& rung) {
-    std::string text(find_method(rung.method).leaves_out);
-    return rung.depth == 1 || rung.method == "march"
-               ? fmt::format("light scattered more than {} time{}; {}", rung.depth,
-                             rung.depth == 1 ? "" : "s", text)
-               : text;
+    if (rung.method == "march" && rung.depth > 1) {
+        return fmt::format("light scattered more than {} times; glass, metal, lights with a size",
+                           rung.depth);
+    }
+    return std::string(find_method(rung.method).leaves_out);
 }
 
 std::string table_of(const LoadedScene& scene, const Ladder& ladder) {

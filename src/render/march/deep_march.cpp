@@ -53,7 +53,10 @@ DeepMarch::DeepMarch(const MarchScene& scene) : scene_(scene) {
 }
 
 GatherPlaces DeepMarch::places(int level) {
-    const double gathers = scene_.params.gathers * std::pow(scene_.params.thinning, level);
+    const double most = scene_.params.gathers;
+    // At least one for all of the light: rarer ones would weigh more than 1 each, and sparkle.
+    const double gathers =
+        std::max(std::min(most, 1.0), most * std::pow(scene_.params.thinning, level));
     return {gathers, numbers_.next()};
 }
 

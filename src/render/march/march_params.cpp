@@ -51,7 +51,7 @@ const Table<MarchParams>& march_table() {
             .add(
                 "thinning", &MarchParams::thinning,
                 {.help = "Factor of directions and gathers from one level of gathering rays to the "
-                         "next",
+                         "next; one of each is left",
                  .min = 0.01,
                  .max = 1})
             .add("deep_step", &MarchParams::deep_step,

@@ -142,12 +142,11 @@ Vec3f MarchScene::depth_to(std::size_t light, const Vec3d& point, const LightSam
         const bool is_close = sample.distance < 4 * m.feature;
         const PointDepth* near =
             m.point_depth.empty() || i != inside || is_close ? nullptr : m.point_depth[light].get();
-        sum +=
-            m.extinction *
-            (sun    ? (*sun)(point)
-             : near ? (*near)(point)
-                    : density_integral(*m.medium, {point, sample.direction, 0, sample.distance},
-                                       shadow_steps()));
+        sum += m.extinction *
+               (sun    ? (*sun)(point)
+                : near ? (*near)(point)
+                       : density_integral(*m.medium, {point, sample.direction, 0, sample.distance},
+                                          shadow_steps()));
     }
     return sum;
 }

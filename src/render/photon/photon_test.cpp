@@ -367,5 +367,27 @@ TEST(Photon, DirectLightIsThatOfThePathTracer) {
     for (const Channel& c : path.planes) EXPECT_EQ(c.values, photon.find(c.name)->values);
 }
 
+// Maps of several sources differ no more than their photons do by chance.
+TEST(Photon, SourcesTogetherBringTheSumOfTheirLight) {
+    View view;
+    view.camera = ortho({0, -4, 0}, 2);
+    view.media = {voxels(
+        16, [](const Vec3d& p) { return lumps(p); }, coefficients(Vec3d(20), Vec3d(0.97)))};
+    view.lights = {delta_sun({-1, -1, 1}, Vec3f(3)), sky({0.1f, 0.15f, 0.25f})};
+    PhotonParams params;
+    params.photons = 60'000;
+    const Estimate got =
+        mapped_radiance(view, params, {.depth = 24, .batches = 12, .samples = 256, .seed = 3});
+    const Estimate expected =
+        mean_radiance(view, {}, {.depth = 24, .batches = 32, .samples = 256, .seed = 4});
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_LT(got.error[c], 0.012 * got.mean[c]);
+        // The blur of the photons' balls beside the edges of a thick cloud.
+        const double error = std::hypot(got.error[c], expected.error[c]);
+        EXPECT_NEAR(got.mean[c], expected.mean[c],
+                    critical_z(3, 12) * error + 0.02 * expected.mean[c]);
+    }
+}
+
 }  // namespace
 }  // namespace gischt

@@ -148,11 +148,13 @@ namespace {
 
 constexpr int chunk = 2048;  // photons that a thread takes at a time
 
-// The stratified numbers with which photon i of a map leaves its source.
+// The numbers with which photon i of a map leaves its source: stratified but for the choice of the
+// source. A stratified choice made the power of several sources together wander with the seed by
+// 7 %, whatever the number of photons.
 EmittedLight emitted(const LightEmission& emission, std::uint64_t key, std::uint32_t i) {
     const auto seed = [key](std::uint32_t d) { return random_bits(key, d); };
-    return emission.sample(sobol_1d(i, seed(0)), sobol_2d(i, seed(1)), sobol_2d(i, seed(2)),
-                           sobol_1d(i, seed(3)));
+    return emission.sample(random_uniform(random_key(key, 5), i), sobol_2d(i, seed(1)),
+                           sobol_2d(i, seed(2)), sobol_1d(i, seed(3)));
 }
 
 // Whether a ray is left to the photons that are aimed.
