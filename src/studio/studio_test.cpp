@@ -44,7 +44,8 @@ TEST(FrameRange, ReadsItsFormsAndNothingElse) {
     EXPECT_EQ(parse_frame_range("3-9x2"), (FrameRange{3, 9, 2}));
     EXPECT_EQ(parse_frame_range("3-9x2").count(), 4);
     EXPECT_EQ(parse_frame_range("3-8x2").count(), 3);
-    for (const char* bad : {"", "a", "3-", "9-3", "3-9x0", "3-9x", "3 ", "-3", "99999999999", "0-2147483647"}) {
+    for (const char* bad :
+         {"", "a", "3-", "9-3", "3-9x0", "3-9x", "3 ", "-3", "99999999999", "0-2147483647"}) {
         EXPECT_THROW(parse_frame_range(bad), Error) << bad;
     }
     EXPECT_EQ(frame_path("a/b.png", 12), fs::path("a/b_0012.png"));
