@@ -71,10 +71,10 @@ struct ProgressiveTask {
 
 // Renders the samples [first_sample, first_sample + samples_per_pixel) of every pixel of the view,
 // in passes over the whole picture that double. Stops earlier when the noise or the time is
-// reached. The time is looked at after every pixel. The first pass of one sample goes from coarse to
-// fine (image/coarse_order.h): one pixel of every block of 8x8 is always taken, and pixels that have
-// none yet show their block's, so that the picture has no holes. Partial pictures and checkpoints
-// come between pixels too, when a pass takes long.
+// reached. The time is looked at after every pixel. The first pass of one sample goes from coarse
+// to fine (image/coarse_order.h): one pixel of every block of 8x8 is always taken, and pixels that
+// have none yet show their block's, so that the picture has no holes. Partial pictures and
+// checkpoints come between pixels too, when a pass takes long.
 //
 // With settings.noise and settings.adaptive, from 16 samples on, a pass leaves out each tile of
 // 16x16 pixels that is good enough together with its eight neighbours: mean variance of the pixels'
