@@ -9,17 +9,18 @@ namespace gischt {
 namespace {
 
 // Slots of the scratch memory of a thread.
-constexpr int slot_velocity = 0, slot_predicted = 3, slot_out = 6, slot_scalars = 10;
+constexpr int slot_velocity = 0, slot_predicted = 3, slot_out = 6, slot_carried = 7,
+              slot_scalars = 10;
 
 // The part of the sweeps that does not change from block to block.
 class Sweep {
   public:
     Sweep(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
-          Interpolation interpolation)
+          const AdvectOptions& options)
         : domain_(domain),
           blocks_(blocks),
           speeds_(speeds),
-          interpolation_(interpolation),
+          options_(options),
           dt_over_h_(dt / domain.h) {
         Vec3f peak;
         for (const Vec3f& s : speeds) peak = max(peak, s);
@@ -65,7 +66,7 @@ class Sweep {
         Vec3i halo;
         for (int a = 0; a < 3; ++a) {
             halo[a] = static_cast<int>(std::ceil(speed[a] * dt_over_h_)) +
-                      (interpolation_ == Interpolation::Linear ? 1 : 2);
+                      (options_.interpolation == Interpolation::Linear ? 1 : 2);
         }
         return Lattice::around(blocks_.cells(block), halo, true, domain_.is_2d());
     }
@@ -87,18 +88,20 @@ class Sweep {
         g.dt_over_h = static_cast<float>(dt_over_h_);
         g.face_axis = face_axis;
         g.is_2d = domain_.is_2d();
-        g.interpolation = interpolation_;
+        g.interpolation = options_.interpolation;
+        g.trace_order = options_.trace_order;
         return g;
     }
 
     const Domain& domain() const { return domain_; }
     const BlockMap& blocks() const { return blocks_; }
+    Interpolation interpolation() const { return options_.interpolation; }
 
   private:
     const Domain& domain_;
     const BlockMap& blocks_;
     const BlockSpeeds& speeds_;
-    Interpolation interpolation_;
+    AdvectOptions options_;
     double dt_over_h_;
     Vec3i reach_;
 };
@@ -130,6 +133,7 @@ class ScalarSweep {
         std::vector<SparseField*> target;
         for (std::size_t s = 0; s < scalars_.size(); ++s) {
             const AdvectedScalar& q = scalars_[s];
+            if (q.scheme == AdvectionScheme::Conservative) continue;
             const bool two_passes = q.scheme == AdvectionScheme::MacCormack;
             if (corrects_ && !two_passes) continue;
             const bool is_last = corrects_ || !two_passes;
@@ -169,6 +173,7 @@ class ScalarSweep {
             b.predicted = predicted;
         }
         b.out = scratch.array(slot + 2, out.count());
+        b.limited = sweep_.interpolation() == Interpolation::Cubic;
         return b;
     }
 
@@ -202,9 +207,13 @@ void run_sweep(const Sweep& sweep, const AdvectedVelocity& v, std::span<Advected
     FaceField& target = corrects || !two_passes ? *v.next : *v.predicted;
     for_blocks(sweep.blocks(), [&](int block, Scratch& scratch) {
         const Lattice in = sweep.inputs(block);
-        const auto velocity = gather_velocity(sweep.domain(), *v.now, in, slot_velocity, scratch);
+        const FaceField& through = v.through ? *v.through : *v.now;
+        const auto velocity = gather_velocity(sweep.domain(), through, in, slot_velocity, scratch);
         scalar_sweep.run(block, in, velocity, scratch);
         if (corrects && !two_passes) return;
+        const auto carried =
+            v.through ? gather_velocity(sweep.domain(), *v.now, in, slot_carried, scratch)
+                      : velocity;
         std::array<const float*, 3> predicted{};
         if (corrects) {
             predicted = gather_velocity(sweep.domain(), *v.predicted, in, slot_predicted, scratch);
@@ -214,7 +223,7 @@ void run_sweep(const Sweep& sweep, const AdvectedVelocity& v, std::span<Advected
             AdvectGeometry g = sweep.geometry(block, in, a, out);
             g.velocity = velocity;
             AdvectedBlock q;
-            q.before = velocity[static_cast<std::size_t>(a)];
+            q.before = carried[static_cast<std::size_t>(a)];
             q.predicted = predicted[static_cast<std::size_t>(a)];
             q.out = scratch.array(slot_out, out.count());
             advect_block(g, {&q, 1});
@@ -227,9 +236,9 @@ void run_sweep(const Sweep& sweep, const AdvectedVelocity& v, std::span<Advected
 }  // namespace
 
 void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
-            Interpolation interpolation, AdvectedVelocity& velocity,
+            const AdvectOptions& options, AdvectedVelocity& velocity,
             std::span<AdvectedScalar> scalars) {
-    const Sweep sweep(domain, blocks, speeds, dt, interpolation);
+    const Sweep sweep(domain, blocks, speeds, dt, options);
     bool needs_correction = velocity.scheme == AdvectionScheme::MacCormack;
     for (const AdvectedScalar& s : scalars) {
         needs_correction |= s.scheme == AdvectionScheme::MacCormack;
@@ -237,7 +246,22 @@ void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& spe
     run_sweep(sweep, velocity, scalars, false);
     if (needs_correction) run_sweep(sweep, velocity, scalars, true);
     std::swap(*velocity.now, *velocity.next);
-    for (const AdvectedScalar& s : scalars) std::swap(*s.now, *s.next);
+    for (const AdvectedScalar& s : scalars) {
+        if (s.scheme != AdvectionScheme::Conservative) std::swap(*s.now, *s.next);
+    }
+}
+
+void drop_small(const BlockMap& blocks, SparseField& field, float floor) {
+    parallel_for(blocks.size(), 1, [&](int b) {
+        float *v = field.values.tile(blocks.first_tile(b)),
+              *end = field.values.tile(blocks.end_tile(b) - 1) + tile_values;
+        bool active = false;
+        for (; v != end; ++v) {
+            if (std::abs(*v) < floor) *v = 0;
+            active |= *v != 0;
+        }
+        field.active[static_cast<std::size_t>(b)] = active;
+    });
 }
 
 BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks,

@@ -20,6 +20,9 @@ struct SparseField {
         : values(map), active(static_cast<std::size_t>(blocks.size()), 0) {}
 };
 
+// Zeroes what is below the floor, and finds out which blocks are left with anything.
+void drop_small(const BlockMap& blocks, SparseField& field, float floor);
+
 // Three buffers of one scalar. advect() leaves the result in `now`.
 struct AdvectedScalar {
     SparseField *now = nullptr, *predicted = nullptr, *next = nullptr;
@@ -31,17 +34,25 @@ struct AdvectedScalar {
 struct AdvectedVelocity {
     FaceField *now = nullptr, *predicted = nullptr, *next = nullptr;
     AdvectionScheme scheme = AdvectionScheme::MacCormack;
+    // The velocity that carries everything; null: `now`.
+    const FaceField* through = nullptr;
+};
+
+struct AdvectOptions {
+    Interpolation interpolation = Interpolation::Linear;
+    int trace_order = 2;  // of Runge-Kutta: 2 or 3
 };
 
 // Largest |component| of the velocity on the faces of each block, m/s.
 using BlockSpeeds = std::vector<Vec3f>;
 BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks, const FaceField& velocity);
 
-// Transports scalars and the velocity itself over dt seconds through the velocity `now`, whose
-// speeds bound how far a block has to look. Results and inputs change places: `now` is the new
-// state. Reads and writes about 4 (2 + 3) 5 bytes per cell of active fields.
+// Transports scalars and the velocity itself over dt seconds through a velocity, whose speeds bound
+// how far a block has to look. Conservative scalars are left alone: see transport.h. Results and
+// inputs change places: `now` is the new state. Reads and writes about 4 (2 + 3) 5 bytes per cell
+// of active fields.
 void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
-            Interpolation interpolation, AdvectedVelocity& velocity,
+            const AdvectOptions& options, AdvectedVelocity& velocity,
             std::span<AdvectedScalar> scalars);
 
 }  // namespace gischt

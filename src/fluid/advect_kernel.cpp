@@ -198,6 +198,47 @@ HWY_INLINE Floats cubic(const AdvectGeometry& g, const float* p, const Stencil& 
     }
 }
 
+// The four weights of Lagrange's polynomial through points -1, 0, 1, 2.
+struct CubicWeights {
+    Floats w[4];
+};
+
+HWY_INLINE CubicWeights cubic_weights(Floats t) {
+    const Tag d;
+    const auto one = hn::Set(d, 1.0f), sixth = hn::Set(d, 1.0f / 6), half = hn::Set(d, 0.5f);
+    const auto up = hn::Add(t, one), down = hn::Sub(t, one), far = hn::Sub(down, one);
+    return {{hn::Neg(hn::Mul(hn::Mul(t, sixth), hn::Mul(down, far))),
+             hn::Mul(hn::Mul(up, half), hn::Mul(down, far)),
+             hn::Neg(hn::Mul(hn::Mul(up, half), hn::Mul(t, far))),
+             hn::Mul(hn::Mul(up, sixth), hn::Mul(t, down))}};
+}
+
+HWY_INLINE Floats weighed(const CubicWeights& w, const Floats* f) {
+    return hn::MulAdd(w.w[3], f[3],
+                      hn::MulAdd(w.w[2], f[2], hn::MulAdd(w.w[1], f[1], hn::Mul(w.w[0], f[0]))));
+}
+
+template <int Dim>
+HWY_INLINE Floats lagrange(const AdvectGeometry& g, const float* p, const Stencil& s) {
+    const std::ptrdiff_t sy = g.size.x, sz = sy * g.size.y;
+    const CubicWeights wx = cubic_weights(s.fx), wy = cubic_weights(s.fy);
+    const auto plane = [&](const float* q) HWY_ATTR {
+        Floats rows[4], f[4];
+        for (int j = 0; j < 4; ++j) {
+            load_rows<4>(q + sy * (j - 1) - 1, s.base, f);
+            rows[j] = weighed(wx, f);
+        }
+        return weighed(wy, rows);
+    };
+    if constexpr (Dim == 2) {
+        return plane(p);
+    } else {
+        Floats planes[4];
+        for (int k = 0; k < 4; ++k) planes[k] = plane(p + sz * (k - 1));
+        return weighed(cubic_weights(s.fz), planes);
+    }
+}
+
 // Velocity at the points themselves: means of the nearest faces.
 template <int Dim>
 HWY_INLINE Positions velocity_at_points(const AdvectGeometry& g, std::ptrdiff_t at) {
@@ -240,12 +281,35 @@ HWY_INLINE Positions moved(const Positions& p, const Positions& v, float time) {
 template <int Dim>
 HWY_INLINE Positions trace(const AdvectGeometry& g, const Positions& start, const Positions& v,
                            float time) {
-    return moved(start, velocity_at<Dim>(g, moved(start, v, 0.5f * time)), time);
+    const Positions middle = velocity_at<Dim>(g, moved(start, v, 0.5f * time));
+    if (g.trace_order == 2) return moved(start, middle, time);
+    const Positions late = velocity_at<Dim>(g, moved(start, middle, 0.75f * time));
+    return moved(moved(moved(start, v, time * 2 / 9), middle, time / 3), late, time * 4 / 9);
 }
 
 template <int Dim>
 HWY_INLINE Floats interpolate(const AdvectGeometry& g, const float* p, const Stencil& s) {
-    return g.interpolation == Interpolation::Linear ? linear<Dim>(g, p, s) : cubic<Dim>(g, p, s);
+    switch (g.interpolation) {
+        case Interpolation::Linear:
+            return linear<Dim>(g, p, s);
+        case Interpolation::MonotoneCubic:
+            return cubic<Dim>(g, p, s);
+        default:
+            return lagrange<Dim>(g, p, s);
+    }
+}
+
+// Brings a value into the range of the corners around the origin.
+template <int Dim>
+HWY_INLINE Floats limited(const AdvectGeometry& g, const float* p, const Stencil& origin,
+                          Floats value) {
+    const Corners<Dim> c = load_corners<Dim>(g, p, origin);
+    auto low = c.v[0], high = c.v[0];
+    for (int i = 1; i < (Dim == 2 ? 4 : 8); ++i) {
+        low = hn::Min(low, c.v[i]);
+        high = hn::Max(high, c.v[i]);
+    }
+    return hn::Min(hn::Max(value, low), high);
 }
 
 // Predicted value plus half the error of the way back, kept inside the range of the corners.
@@ -256,13 +320,14 @@ HWY_INLINE Floats corrected(const AdvectGeometry& g, const AdvectedBlock& q, std
     const auto error =
         hn::Sub(hn::LoadU(d, q.before + at), interpolate<Dim>(g, q.predicted, target));
     const auto value = hn::MulAdd(hn::Set(d, 0.5f), error, hn::LoadU(d, q.predicted + at));
-    const Corners<Dim> c = load_corners<Dim>(g, q.before, origin);
-    auto low = c.v[0], high = c.v[0];
-    for (int i = 1; i < (Dim == 2 ? 4 : 8); ++i) {
-        low = hn::Min(low, c.v[i]);
-        high = hn::Max(high, c.v[i]);
-    }
-    return hn::Min(hn::Max(value, low), high);
+    return limited<Dim>(g, q.before, origin, value);
+}
+
+template <int Dim>
+HWY_INLINE Floats carried_along(const AdvectGeometry& g, const AdvectedBlock& q,
+                                const Stencil& origin) {
+    const Floats value = interpolate<Dim>(g, q.before, origin);
+    return q.limited ? limited<Dim>(g, q.before, origin, value) : value;
 }
 
 HWY_INLINE void store(const AdvectedBlock& q, std::ptrdiff_t to, Floats value) {
@@ -300,7 +365,7 @@ void advect(const AdvectGeometry& g, std::span<const AdvectedBlock> quantities) 
                 for (const AdvectedBlock& q : quantities) {
                     store(q, to,
                           q.predicted ? corrected<Dim>(g, q, at, origin, target)
-                                      : interpolate<Dim>(g, q.before, origin));
+                                      : carried_along<Dim>(g, q, origin));
                 }
             }
         }

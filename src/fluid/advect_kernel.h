@@ -8,8 +8,10 @@
 
 namespace gischt {
 
-enum class AdvectionScheme { SemiLagrangian, MacCormack };
-enum class Interpolation { Linear, MonotoneCubic };
+enum class AdvectionScheme { SemiLagrangian, MacCormack, Conservative };
+// Linear; cubic Hermite with limited slopes (Fritsch & Carlson 1980), which makes no new extrema;
+// cubic through the four nearest points (Lagrange), of fourth order.
+enum class Interpolation { Linear, MonotoneCubic, Cubic };
 
 // One quantity in an advection sweep over a block. Without `predicted`: out = before, taken where
 // the fluid came from (semi-Lagrangian, Stam 1999). With it: out = predicted corrected by half the
@@ -21,6 +23,9 @@ struct AdvectedBlock {
     float* out = nullptr;
     float factor = 1;  // multiplies the result: decay
     float floor = 0;   // results smaller than this become zero
+    // Without `predicted`: keeps the result in the range of the values at the corners around the
+    // origin, so that the cubic through four points does not overshoot (Bermejo, Staniforth 1992).
+    bool limited = false;
 };
 
 // A block with its halo: all inputs are dense arrays of `size` points, x fastest, component a of
@@ -34,10 +39,12 @@ struct AdvectGeometry {
     int face_axis = -1;   // the points are centres of cells, or lower faces along this axis
     bool is_2d = false;
     Interpolation interpolation = Interpolation::Linear;
+    int trace_order = 2;
 };
 
 // Advects the quantities, which live at the same points and share the traces: the midpoint rule
-// (second-order Runge-Kutta) through the velocity interpolated linearly. Vectorized, the
+// (second-order Runge-Kutta) or Ralston's rule of third order (1962) through the velocity
+// interpolated linearly. Vectorized, the
 // instruction set chosen at run time. The halo must hold the largest displacement plus 1 (2 for the
 // cubic interpolation); what lies further is clamped to it.
 void advect_block(const AdvectGeometry& geometry, std::span<const AdvectedBlock> quantities);

@@ -99,9 +99,9 @@ void PressureProjection::flux_sums(const FaceField& velocity, TileField<float>& 
     });
 }
 
-// u -= potential(c) - potential(c - 1) on faces that are not closed. Returns the integral of u^2.
+// As below; returns the integral of u^2 and finds the speeds.
 double PressureProjection::subtract_gradient(FaceField& velocity, const TileField<float>& potential,
-                                             BlockSpeeds& speeds) const {
+                                             float factor, BlockSpeeds& speeds) const {
     std::vector<double> squares(static_cast<std::size_t>(blocks_.size()));
     for_blocks(blocks_, [&](int block, Scratch& scratch) {
         const Box3i cells = blocks_.cells(block);
@@ -130,11 +130,11 @@ double PressureProjection::subtract_gradient(FaceField& velocity, const TileFiel
                 float sum = 0;
                 if (open) {
                     for (int i = 0; i < n; ++i) {
-                        if (open[i] > 0) to[i] -= q[i] - q[i - s];
+                        if (open[i] > 0) to[i] -= factor * (q[i] - q[i - s]);
                         sum += open[i] * to[i] * to[i];
                     }
                 } else {
-                    for (int i = 0; i < n; ++i) to[i] -= q[i] - q[i - s];
+                    for (int i = 0; i < n; ++i) to[i] -= factor * (q[i] - q[i - s]);
                     for (int i = 0; i < n; ++i) sum += to[i] * to[i];
                 }
                 square += static_cast<double>(sum);
@@ -145,6 +145,12 @@ double PressureProjection::subtract_gradient(FaceField& velocity, const TileFiel
         squares[static_cast<std::size_t>(block)] = square;
     });
     return tree_sum(squares) * domain_.cell_volume();
+}
+
+void PressureProjection::subtract_gradient(FaceField& velocity, const TileField<float>& potential,
+                                           float factor) const {
+    BlockSpeeds ignored(static_cast<std::size_t>(blocks_.size()));
+    subtract_gradient(velocity, potential, factor, ignored);
 }
 
 ProjectionResult PressureProjection::project(FaceField& velocity, TileField<float>& potential,
@@ -159,7 +165,7 @@ ProjectionResult PressureProjection::project(FaceField& velocity, TileField<floa
         std::ranges::fill(potential.values(), 0.0f);
         result.solve.converged = true;
     }
-    result.square_speed = subtract_gradient(velocity, potential, speeds);
+    result.square_speed = subtract_gradient(velocity, potential, 1, speeds);
     close_sides(domain_, velocity);
     // What is left, in the same sense: cells inside solids have rigid motion and none.
     flux_sums(velocity, rhs_);

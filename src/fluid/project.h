@@ -31,11 +31,15 @@ class PressureProjection {
     ProjectionResult project(FaceField& velocity, TileField<float>& potential, double dt,
                              double tolerance, int max_iterations, BlockSpeeds& speeds, Job& job);
 
+    // u -= factor (potential(c) - potential(c - 1)) on all faces that are not closed.
+    void subtract_gradient(FaceField& velocity, const TileField<float>& potential,
+                           float factor) const;
+
     double bytes_per_cell_iteration() const { return solver_->bytes_per_cell_iteration(); }
 
   private:
     void flux_sums(const FaceField& velocity, TileField<float>& out) const;
-    double subtract_gradient(FaceField& velocity, const TileField<float>& potential,
+    double subtract_gradient(FaceField& velocity, const TileField<float>& potential, float factor,
                              BlockSpeeds& speeds) const;
 
     const Domain& domain_;

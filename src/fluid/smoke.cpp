@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "fluid/sides.h"
+#include "fluid/transport.h"
 #include "solve/diffusion.h"
 
 namespace gischt {
@@ -16,6 +17,8 @@ namespace {
 // denormals that a decaying tail would end in.
 constexpr float density_floor = 1e-6f;      // 1
 constexpr float temperature_floor = 1e-4f;  // K
+// Where nothing may be lost, the floors are lower by this factor.
+constexpr float conservative_floor = 1e-4f;
 
 void check(const SmokeParams& p, const FluidWorld& world) {
     const auto need = [](bool good, const char* what) {
@@ -53,20 +56,6 @@ float largest(const BlockMap& blocks, const SparseField& field) {
         for (; v != end; ++v) peak = std::max(peak, std::abs(*v));
     }
     return peak;
-}
-
-// Zeroes what is below the floor and finds out which blocks are left with anything.
-void trim(const BlockMap& blocks, SparseField& field, float floor) {
-    parallel_for(blocks.size(), 1, [&](int b) {
-        float *v = field.values.tile(blocks.first_tile(b)),
-              *end = field.values.tile(blocks.end_tile(b) - 1) + tile_values;
-        bool active = false;
-        for (; v != end; ++v) {
-            if (std::abs(*v) < floor) *v = 0;
-            active |= *v != 0;
-        }
-        field.active[static_cast<std::size_t>(b)] = active;
-    });
 }
 
 }  // namespace
@@ -108,31 +97,7 @@ StepStatistics SmokeSolver::step(double dt, Job& job) {
         throw Error(ErrorKind::Usage, "smoke", fmt::format("a step of {} s is impossible", dt));
     }
     const double time = state_.time + dt;
-    {
-        PhaseTimer timer(job, "advect");
-        advect_all(dt);
-    }
-    job.check();
-    {
-        PhaseTimer timer(job, "solids");
-        if (solids_.update(time)) projection_.update_solids();
-    }
-    {
-        PhaseTimer timer(job, "sources");
-        emitters_.apply(domain_, blocks_, time, dt, state_.density, state_.temperature,
-                        state_.velocity);
-    }
-    diffuse_scalars(dt, job);
-    {
-        PhaseTimer timer(job, "forces");
-        apply_forces(domain_, blocks_, forces_at(time), dt, state_.density, state_.temperature,
-                     state_.velocity, velocity_next_);
-        std::swap(state_.velocity, velocity_next_);
-    }
-    diffuse_velocity(dt, job);
-    job.check();
-
-    const ProjectionResult projected = project(dt, job);
+    const ProjectionResult projected = is_high() ? step_high(dt, job) : step_standard(dt, job);
     state_.time = time;
     state_.steps += 1;
     StepStatistics s;
@@ -150,36 +115,88 @@ StepStatistics SmokeSolver::step(double dt, Job& job) {
     return s;
 }
 
-void SmokeSolver::advect_all(double dt) {
-    if (!solids_.is_empty()) {
-        solids_.extrapolate(state_.density);
-        solids_.extrapolate(state_.temperature);
+ProjectionResult SmokeSolver::step_standard(double dt, Job& job) {
+    const double time = state_.time + dt;
+    {
+        const PhaseTimer timer(job, "advect");
+        AdvectedVelocity velocity{&state_.velocity, &velocity_predicted_, &velocity_next_,
+                                  params_.velocity_advection};
+        carry(velocity, speeds_, {params_.interpolation}, dt, job);
     }
-    AdvectedVelocity velocity{&state_.velocity, &velocity_predicted_, &velocity_next_,
-                              params_.velocity_advection};
-    std::array<AdvectedScalar, 2> scalars{
-        AdvectedScalar{&state_.density, &density_predicted_, &density_next_,
-                       params_.density_advection, decay(params_.density_half_life, dt),
-                       density_floor},
-        AdvectedScalar{&state_.temperature, &temperature_predicted_, &temperature_next_,
-                       params_.temperature_advection, decay(params_.temperature_half_life, dt),
-                       temperature_floor}};
-    advect(domain_, blocks_, speeds_, dt, params_.interpolation, velocity, scalars);
+    job.check();
+    meet_solids_and_sources(time, dt, job);
+    diffuse_scalars(dt, nullptr, job);
+    push(time, dt, job);
+    diffuse_velocity(dt, job);
+    job.check();
+    scale_potential(dt);
+    return project(dt, job);
 }
 
-void SmokeSolver::diffuse_scalars(double dt, Job& job) {
+void SmokeSolver::meet_solids_and_sources(double time, double dt, Job& job) {
+    {
+        const PhaseTimer timer(job, "solids");
+        if (solids_.update(time)) projection_.update_solids();
+    }
+    const PhaseTimer timer(job, "sources");
+    emitters_.apply(domain_, blocks_, time, dt, state_.density, state_.temperature,
+                    state_.velocity);
+}
+
+void SmokeSolver::push(double time, double dt, Job& job) {
+    const PhaseTimer timer(job, "forces");
+    apply_forces(domain_, blocks_, forces_at(time), dt, state_.density, state_.temperature,
+                 state_.velocity, velocity_next_);
+    std::swap(state_.velocity, velocity_next_);
+}
+
+// Advects the velocity and both scalars.
+void SmokeSolver::carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds,
+                        const AdvectOptions& options, double dt, Job& job) {
+    const auto scheme = [&](AdvectionScheme wanted) {
+        return is_high() && wanted == AdvectionScheme::MacCormack ? AdvectionScheme::SemiLagrangian
+                                                                  : wanted;
+    };
+    std::array<AdvectedScalar, 2> scalars{
+        AdvectedScalar{&state_.density, &density_predicted_, &density_next_,
+                       scheme(params_.density_advection), decay(params_.density_half_life, dt),
+                       density_floor},
+        AdvectedScalar{&state_.temperature, &temperature_predicted_, &temperature_next_,
+                       scheme(params_.temperature_advection),
+                       decay(params_.temperature_half_life, dt), temperature_floor}};
+    const FaceField* fraction = solids_.is_empty() ? nullptr : &solids_.fraction();
+    for (AdvectedScalar& s : scalars) {
+        if (s.scheme == AdvectionScheme::Conservative) {
+            s.floor *= conservative_floor;
+            const FaceField& through = velocity.through ? *velocity.through : *velocity.now;
+            transport(domain_, blocks_, through, speeds, fraction, dt, s, job);
+        } else if (fraction != nullptr) {
+            solids_.extrapolate(*s.now);
+        }
+    }
+    advect(domain_, blocks_, speeds, dt, options, velocity, scalars);
+}
+
+void SmokeSolver::diffuse_scalars(double dt, SmokeHistory* history, Job& job) {
     const PhaseTimer timer(job, "diffusion");
     const ScalarSides sides{domain_.scalar_borders(), {}};
     const FaceField* fraction = solids_.is_empty() ? nullptr : &solids_.fraction();
     const SolveLimits limits;
-    const auto spread = [&](SparseField& field, double diffusivity, float floor) {
+    const auto spread = [&](SparseField& field, double diffusivity, float floor,
+                            TileField<float> SmokeHistory::*kick) {
         if (diffusivity == 0) return;
+        if (history) history->*kick = field.values;
         const double number = diffusivity * dt / (domain_.h * domain_.h);
         diffuse(field.values, number, sides, fraction, limits, job);
-        trim(blocks_, field, floor);
+        if (history) {
+            auto& k = (history->*kick).values();
+            for (std::size_t i = 0; i < k.size(); ++i) k[i] = field.values.values()[i] - k[i];
+        }
+        drop_small(blocks_, field, floor);
     };
-    spread(state_.density, params_.smoke_diffusivity, density_floor);
-    spread(state_.temperature, params_.thermal_diffusivity, temperature_floor);
+    spread(state_.density, params_.smoke_diffusivity, density_floor, &SmokeHistory::density_kick);
+    spread(state_.temperature, params_.thermal_diffusivity, temperature_floor,
+           &SmokeHistory::temperature_kick);
 }
 
 void SmokeSolver::diffuse_velocity(double dt, Job& job) {
@@ -208,9 +225,8 @@ Forces SmokeSolver::forces_at(double time) const {
     return f;
 }
 
-ProjectionResult SmokeSolver::project(double dt, Job& job) {
-    const PhaseTimer timer(job, "project");
-    // The pressure changes little from step to step; the potential is dt times it.
+// The pressure changes little from step to step; the potential is dt times it.
+void SmokeSolver::scale_potential(double dt) {
     if (state_.potential_dt > 0 && state_.potential_dt != dt) {
         const auto scale = static_cast<float>(dt / state_.potential_dt);
         parallel_for(domain_.map->size(), 64, [&](int t) {
@@ -218,6 +234,10 @@ ProjectionResult SmokeSolver::project(double dt, Job& job) {
             for (int i = 0; i < tile_values; ++i) p[i] *= scale;
         });
     }
+}
+
+ProjectionResult SmokeSolver::project(double dt, Job& job) {
+    const PhaseTimer timer(job, "project");
     ProjectionResult result =
         projection_.project(state_.velocity, state_.potential, dt, params_.pressure_tolerance,
                             params_.pressure_iterations, speeds_, job);
@@ -264,6 +284,10 @@ double SmokeSolver::density_integral() const {
         for (int i = 0; i < tile_values; ++i) sum += static_cast<double>(v[i]);
         return sum;
     });
+    // Conservative transport has smoke in cells that a solid covers in part, and none in others.
+    if (params_.density_advection == AdvectionScheme::Conservative) {
+        return domain_.cell_volume() * all;
+    }
     return domain_.cell_volume() * (all - solids_.sum_inside(density));
 }
 
@@ -288,8 +312,9 @@ void SmokeSolver::fill(const Initial& initial, Job& job) {
             });
         }
     });
-    trim(blocks_, state_.density, density_floor);
-    trim(blocks_, state_.temperature, temperature_floor);
+    drop_small(blocks_, state_.density, density_floor);
+    drop_small(blocks_, state_.temperature, temperature_floor);
+    state_.history = {};
     if (!initial.velocity) return;
     if (initial.project) {
         projection_.project(state_.velocity, state_.potential, 1, params_.pressure_tolerance,
@@ -303,8 +328,8 @@ void SmokeSolver::fill(const Initial& initial, Job& job) {
 
 void SmokeSolver::set_state(SmokeState state) {
     state_ = std::move(state);
-    trim(blocks_, state_.density, 0);
-    trim(blocks_, state_.temperature, 0);
+    drop_small(blocks_, state_.density, 0);
+    drop_small(blocks_, state_.temperature, 0);
     speeds_ = measure_speeds(domain_, blocks_, state_.velocity);
     if (solids_.update(state_.time)) projection_.update_solids();
 }

@@ -10,6 +10,16 @@
 
 namespace gischt {
 
+// What a step of high accuracy hands on to the next.
+struct SmokeHistory {
+    FaceField previous;  // velocity one step ago, m/s
+    // Half of what changes the velocity (a scalar) in a step beside advection, at its end: m/s (1,
+    // K). Empty for a scalar that does not diffuse.
+    FaceField kick;
+    TileField<float> density_kick, temperature_kick;
+    double dt = 0;  // of that step, s; 0: there is none
+};
+
 // All that a later step depends on. Scalars are deviations from the ambient.
 struct SmokeState {
     double time = 0;  // s
@@ -19,6 +29,7 @@ struct SmokeState {
     double potential_dt = 0;     // its dt, s; 0: no projection yet
     SparseField density;         // 1
     SparseField temperature;     // T - T_ambient, K
+    SmokeHistory history;
 };
 
 struct StepStatistics {
@@ -69,9 +80,20 @@ class SmokeSolver {
     double pressure_bytes_per_cell() const { return projection_.bytes_per_cell_iteration(); }
 
   private:
-    void advect_all(double dt);
-    void diffuse_scalars(double dt, Job& job);
+    bool is_high() const { return params_.accuracy == Accuracy::High; }
+    ProjectionResult step_standard(double dt, Job& job);
+    void carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds, const AdvectOptions& options,
+               double dt, Job& job);
+    void meet_solids_and_sources(double time, double dt, Job& job);
+    // Notes what diffusion changes in `history`, if any.
+    void diffuse_scalars(double dt, SmokeHistory* history, Job& job);
+    void push(double time, double dt, Job& job);
     void diffuse_velocity(double dt, Job& job);
+    void scale_potential(double dt);
+    // Of high accuracy, in smoke_second_order.cpp.
+    ProjectionResult step_high(double dt, Job& job);
+    ProjectionResult advance_high(double dt, Job& job);
+    void advect_high(double dt, Job& job);
     Forces forces_at(double time) const;
     ProjectionResult project(double dt, Job& job);
     double thermal_expansion() const;
@@ -87,6 +109,7 @@ class SmokeSolver {
     BlockSpeeds speeds_;
     // What a sweep reads or leaves besides the state.
     FaceField velocity_predicted_, velocity_next_;
+    TileField<float> potential_before_;
     SparseField density_predicted_, density_next_, temperature_predicted_, temperature_next_;
 };
 

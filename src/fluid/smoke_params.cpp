@@ -55,6 +55,16 @@ static const std::vector<Choice<AdvectionScheme>>& schemes() {
     return words;
 }
 
+static const std::vector<Choice<AdvectionScheme>>& scalar_schemes() {
+    static const std::vector<Choice<AdvectionScheme>> words = [] {
+        std::vector<Choice<AdvectionScheme>> w = schemes();
+        w.push_back({"conservative", AdvectionScheme::Conservative,
+                     "nothing is lost or gained; short steps, slower where the air is fast"});
+        return w;
+    }();
+    return words;
+}
+
 const Table<SmokeParams>& smoke_table() {
     using P = SmokeParams;
     static const Table<P> table =
@@ -84,15 +94,24 @@ const Table<SmokeParams>& smoke_table() {
                  {.unit = "m^2/s", .help = "Spreads smoke", .min = 0})
             .add("initial_velocity", &P::initial_velocity,
                  {.unit = "m/s", .help = "Of all air in the beginning"})
+            .choice(
+                "accuracy", &P::accuracy,
+                {{"standard", Accuracy::Standard, "first order in time"},
+                 {"high", Accuracy::High,
+                  "second order in time and cubic interpolation, in place of what the advection "
+                  "keys say (but for conservative): for detail and for measuring; slower"}},
+                {.help = "How well the motion is resolved"})
             .choice("velocity_advection", &P::velocity_advection, schemes(),
                     {.help = "How velocity is carried along"})
-            .choice("density_advection", &P::density_advection, schemes(),
+            .choice("density_advection", &P::density_advection, scalar_schemes(),
                     {.help = "How smoke is carried along"})
-            .choice("temperature_advection", &P::temperature_advection, schemes(),
+            .choice("temperature_advection", &P::temperature_advection, scalar_schemes(),
                     {.help = "How heat is carried along"})
             .choice("interpolation", &P::interpolation,
                     {{"linear", Interpolation::Linear},
-                     {"monotone_cubic", Interpolation::MonotoneCubic, "sharper and slower"}},
+                     {"monotone_cubic", Interpolation::MonotoneCubic, "sharper and slower"},
+                     {"cubic", Interpolation::Cubic,
+                      "sharper still: velocity may overshoot, smoke and heat are kept in range"}},
                     {.help = "Of the carried values"})
             .add("cfl", &P::cfl,
                  {.help = "Cells that anything may move in a step",

@@ -23,6 +23,10 @@ struct WindParams {
 };
 const Table<WindParams>& wind_table();
 
+// How well the motion is resolved. Standard: advect, then project, of first order in time. High: of
+// second order in time (see smoke_second_order.cpp), with cubic interpolation of what is carried.
+enum class Accuracy { Standard, High };
+
 enum class VelocityOutput { None, Content, All };
 
 // Which fields a frame has beside density and temperature.
@@ -47,6 +51,7 @@ struct SmokeParams {
     double viscosity = 0, thermal_diffusivity = 0, smoke_diffusivity = 0;  // m^2/s
     Vec3d initial_velocity;                                                // m/s
 
+    Accuracy accuracy = Accuracy::Standard;
     AdvectionScheme velocity_advection = AdvectionScheme::MacCormack,
                     density_advection = AdvectionScheme::MacCormack,
                     temperature_advection = AdvectionScheme::MacCormack;

@@ -13,25 +13,38 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "state files are little-endian");
 
-constexpr std::string_view magic = "gischt smoke 1\n";
+constexpr std::string_view magic = "gischt smoke 2\n";
 
 struct Header {
     std::int32_t cells[3];
     std::int32_t frame;
     std::int64_t steps;
-    double time, potential_dt;
+    double time, potential_dt, history_dt;
+    std::int32_t has_density_kick, has_temperature_kick;
 };
+
+template <class Field, class F>
+void for_faces(Field& field, F&& f) {
+    for (int a = 0; a < field.axes(); ++a) {
+        f(field[a].values());
+        f(field.last[static_cast<std::size_t>(a)]);
+    }
+}
 
 // The arrays of a state in the order of the file.
 template <class State, class F>
 void for_arrays(State& s, F&& f) {
-    for (int a = 0; a < s.velocity.axes(); ++a) {
-        f(s.velocity[a].values());
-        f(s.velocity.last[static_cast<std::size_t>(a)]);
-    }
+    for_faces(s.velocity, f);
     f(s.potential.values());
     f(s.density.values.values());
     f(s.temperature.values.values());
+    auto& h = s.history;
+    if (h.dt == 0) return;
+    for_faces(h.previous, f);
+    for_faces(h.kick, f);
+    for (auto* kick : {&h.density_kick, &h.temperature_kick}) {
+        if (!kick->is_empty()) f(kick->values());
+    }
 }
 
 }  // namespace
@@ -48,7 +61,14 @@ void save_smoke_state(const SmokeState& state, int frame, const std::filesystem:
         };
         write(magic.data(), magic.size());
         const Vec3i n = state.velocity.map().bounds().size();
-        const Header header{{n.x, n.y, n.z}, frame, state.steps, state.time, state.potential_dt};
+        const Header header{{n.x, n.y, n.z},
+                            frame,
+                            state.steps,
+                            state.time,
+                            state.potential_dt,
+                            state.history.dt,
+                            !state.history.density_kick.is_empty(),
+                            !state.history.temperature_kick.is_empty()};
         write(&header, sizeof header);
         for_arrays(state, [&](const AlignedVector<float>& v) {
             write(v.data(), v.size() * sizeof(float));
@@ -100,6 +120,14 @@ SmokeState load_smoke_state(const Domain& domain, const BlockMap& blocks,
     state.potential = TileField<float>(domain.map);
     state.density = SparseField(blocks, domain.map);
     state.temperature = SparseField(blocks, domain.map);
+    SmokeHistory& history = state.history;
+    history.dt = header.history_dt;
+    if (history.dt != 0) {
+        history.previous = FaceField(domain.map);
+        history.kick = FaceField(domain.map);
+        if (header.has_density_kick) history.density_kick = TileField<float>(domain.map);
+        if (header.has_temperature_kick) history.temperature_kick = TileField<float>(domain.map);
+    }
     for_arrays(state, [&](AlignedVector<float>& v) { read(v.data(), v.size() * sizeof(float)); });
     const std::uint64_t computed = hash.value();
     std::uint64_t stored = 0;
