@@ -81,11 +81,21 @@ SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
     state_.temperature = SparseField(blocks_, domain_.map);
     if (params_.initial_velocity != Vec3d{}) {
         Job job;
-        fill({.velocity = [&](const Vec3d&) { return params_.initial_velocity; },
+        fill({.velocity = [&](const Vec3d& p) { return initial_velocity(p); },
               .density = nullptr,
               .temperature = nullptr},
              job);
     }
+}
+
+Vec3d SmokeSolver::initial_velocity(const Vec3d& p) const {
+    if (params_.initial_flow == InitialFlow::Uniform) return params_.initial_velocity;
+    const Vec3d size = domain_.h * Vec3d(domain_.cells), q = 2 * pi * (p - domain_.origin) / size;
+    const double strength =
+        params_.initial_velocity.x * (domain_.is_2d() ? 1.0 : std::cos(q.z));
+    // Unequal edges: the second component makes up for the other length.
+    return strength * Vec3d(std::sin(q.x) * std::cos(q.y),
+                            -std::cos(q.x) * std::sin(q.y) * size.y / size.x, 0);
 }
 
 double SmokeSolver::thermal_expansion() const {

@@ -97,6 +97,7 @@ class SmokeSolver {
     Forces forces_at(double time) const;
     ProjectionResult project(double dt, Job& job);
     double thermal_expansion() const;
+    Vec3d initial_velocity(const Vec3d& point) const;
 
     SmokeParams params_;
     FluidWorld world_;

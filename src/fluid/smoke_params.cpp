@@ -94,6 +94,11 @@ const Table<SmokeParams>& smoke_table() {
                  {.unit = "m^2/s", .help = "Spreads smoke", .min = 0})
             .add("initial_velocity", &P::initial_velocity,
                  {.unit = "m/s", .help = "Of all air in the beginning"})
+            .choice("initial_flow", &P::initial_flow,
+                    {{"uniform", InitialFlow::Uniform},
+                     {"taylor_green", InitialFlow::TaylorGreen,
+                      "vortices as wide as half the domain, initial_velocity.x fast"}},
+                    {.help = "The motion in the beginning"})
             .choice(
                 "accuracy", &P::accuracy,
                 {{"standard", Accuracy::Standard, "first order in time"},
