@@ -69,6 +69,7 @@ class SmokeSolver {
     double pressure_bytes_per_cell() const { return projection_.bytes_per_cell_iteration(); }
 
   private:
+    void hold_sides(double time);
     void advect_all(double dt);
     void diffuse_scalars(double dt, Job& job);
     void diffuse_velocity(double dt, Job& job);
