@@ -161,15 +161,18 @@ class ScalarSweep {
   private:
     AdvectedBlock load(const AdvectedScalar& q, int s, const Lattice& in, const Lattice& out,
                        Scratch& scratch) const {
-        const Borders borders = sweep_.domain().scalar_borders();
+        const Domain& domain = sweep_.domain();
+        const Borders borders = q.sides ? q.sides->borders : domain.scalar_borders();
         const int slot = slot_scalars + 3 * s;
         AdvectedBlock b;
         float* before = scratch.array(slot, in.count());
         gather_block(q.now->values, in, borders, before);
+        if (q.sides) add_side_scalar(domain, *q.sides, in, before);
         b.before = before;
         if (corrects_) {
             float* predicted = scratch.array(slot + 1, in.count());
             gather_block(q.predicted->values, in, borders, predicted);
+            if (q.sides) add_side_scalar(domain, *q.sides, in, predicted);
             b.predicted = predicted;
         }
         b.out = scratch.array(slot + 2, out.count());
@@ -194,6 +197,7 @@ std::array<const float*, 3> gather_velocity(const Domain& domain, const FaceFiel
     for (int a = 0; a < domain.axes(); ++a) {
         float* u = scratch.array(slot + a, in.count());
         gather_block_faces(field, a, in, domain.velocity_borders(a), u);
+        add_side_velocity(domain, a, in, u);
         out[static_cast<std::size_t>(a)] = u;
     }
     return out;
@@ -239,6 +243,9 @@ void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& spe
             const AdvectOptions& options, AdvectedVelocity& velocity,
             std::span<AdvectedScalar> scalars) {
     const Sweep sweep(domain, blocks, speeds, dt, options);
+    for (const AdvectedScalar& s : scalars) {
+        if (s.sides) activate_sides(domain, blocks, *s.sides, *s.now);
+    }
     bool needs_correction = velocity.scheme == AdvectionScheme::MacCormack;
     for (const AdvectedScalar& s : scalars) {
         needs_correction |= s.scheme == AdvectionScheme::MacCormack;

@@ -29,6 +29,7 @@ struct AdvectedScalar {
     AdvectionScheme scheme = AdvectionScheme::MacCormack;
     float factor = 1;  // decay over the step
     float floor = 0;   // smaller results become zero
+    const ScalarHold* sides = nullptr;  // what the domain's sides hold; null: ambient
 };
 
 struct AdvectedVelocity {

@@ -9,10 +9,12 @@ namespace gischt {
 
 const Table<DomainParams>& domain_table() {
     static const std::vector<Choice<SideKind>> kinds{
-        {"open", SideKind::Open, "air and smoke pass; the pressure outside is constant"},
+        {"open", SideKind::Open,
+         "air and smoke pass, as out of a wind tunnel; the pressure outside is constant"},
         {"free_slip", SideKind::FreeSlip, "a smooth wall"},
         {"no_slip", SideKind::NoSlip, "a wall to which the fluid sticks"},
-        {"periodic", SideKind::Periodic, "what leaves here enters on the opposite side"}};
+        {"periodic", SideKind::Periodic, "what leaves here enters on the opposite side"},
+        {"inflow", SideKind::Inflow, "air comes in as `sides` says"}};
     using P = DomainParams;
     static const Table<P> table =
         Table<P>("domain", "The box that is simulated")
@@ -26,7 +28,8 @@ const Table<DomainParams>& domain_table() {
             .choice("y_min", &P::y_min, kinds, {.help = "The side at the lower end of y"})
             .choice("y_max", &P::y_max, kinds, {.help = "The side at the upper end of y"})
             .choice("z_min", &P::z_min, kinds, {.help = "The side at the lower end of z"})
-            .choice("z_max", &P::z_max, kinds, {.help = "The side at the upper end of z"});
+            .choice("z_max", &P::z_max, kinds, {.help = "The side at the upper end of z"})
+            .sub("sides", &P::sides, sides_table(), {.help = "What the sides hold"});
     return table;
 }
 
@@ -34,7 +37,8 @@ static Error bad_domain(std::string what, std::string hint = {}) {
     return {ErrorKind::Usage, "domain", std::move(what), std::move(hint)};
 }
 
-Domain::Domain(const DomainParams& p) : side{p.x_min, p.x_max, p.y_min, p.y_max, p.z_min, p.z_max} {
+Domain::Domain(const DomainParams& p)
+    : side{p.x_min, p.x_max, p.y_min, p.y_max, p.z_min, p.z_max}, sides(p.sides.all()) {
     const Vec3d edge = p.max - p.min;
     const double longest = max_component(edge);
     if (!(edge.x > 0 && edge.y > 0 && edge.z >= 0) || !std::isfinite(longest)) {
@@ -60,16 +64,26 @@ Domain::Domain(const DomainParams& p) : side{p.x_min, p.x_max, p.y_min, p.y_max,
                                          "xyz"[a], "xyz"[a]));
         }
     }
+    check_sides(side, sides, axes());
+    held.density.borders = held.temperature.borders = scalar_borders();
 }
 
 Borders Domain::scalar_borders() const {
     Borders borders;
     for (std::size_t s = 0; s < 6; ++s) {
-        borders.side[s] = side[s] == SideKind::Open       ? Border::Zero
+        borders.side[s] = side[s] == SideKind::Open || side[s] == SideKind::Inflow ? Border::Zero
                           : side[s] == SideKind::Periodic ? Border::Periodic
                                                           : Border::Even;
     }
     if (is_2d()) borders.side[4] = borders.side[5] = Border::Clamp;
+    return borders;
+}
+
+Borders Domain::pressure_borders() const {
+    Borders borders = scalar_borders();
+    for (std::size_t s = 0; s < 6; ++s) {
+        if (side[s] == SideKind::Inflow) borders.side[s] = Border::Even;
+    }
     return borders;
 }
 
@@ -89,6 +103,9 @@ Borders Domain::velocity_borders(int axis) const {
                 break;
             case SideKind::Periodic:
                 borders.side[s] = Border::Periodic;
+                break;
+            case SideKind::Inflow:
+                borders.side[s] = is_normal ? Border::Clamp : Border::Zero;
                 break;
         }
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "fluid/side_values.h"
 #include "grid/gather.h"
 #include "math/transform.h"
 #include "schema/table.h"
@@ -10,14 +11,13 @@
 
 namespace gischt {
 
-enum class SideKind { Open, FreeSlip, NoSlip, Periodic };
-
 // The box in which a fluid is simulated, in metres.
 struct DomainParams {
     int resolution = 64;               // cells along the longest edge
     Vec3d min{0, 0, 0}, max{1, 1, 1};  // no extent along z: 2-D, one cell thick
     SideKind x_min = SideKind::Open, x_max = SideKind::Open, y_min = SideKind::Open,
              y_max = SideKind::Open, z_min = SideKind::Open, z_max = SideKind::Open;
+    SidesParams sides;
 
     void set_all_sides(SideKind kind) { x_min = x_max = y_min = y_max = z_min = z_max = kind; }
 };
@@ -31,9 +31,11 @@ struct Domain {
     double h = 0;  // edge of a cell, m
     Vec3d origin;  // corner of cell (0,0,0), m
     std::array<SideKind, 6> side{};
+    std::array<SideParams, 6> sides;
+    SideValues held;  // at the present moment; in the beginning nothing but zeros
 
-    // Throws Error{Usage} on an empty box, on more cells than a grid takes, and on a periodic side
-    // whose opposite is not.
+    // Throws Error{Usage} on an empty box, on more cells than a grid takes, on a periodic side
+    // whose opposite is not, and as check_sides() does.
     explicit Domain(const DomainParams& params);
 
     bool is_2d() const { return map->is_2d(); }
@@ -58,11 +60,14 @@ struct Domain {
         return box;
     }
 
-    // How quantities continue beyond the sides. Scalars are stored as deviations from the ambient,
-    // so that zero flows in where a side is open; walls are insulated.
+    // How quantities continue beyond the sides, but for what is `held` there. Scalars are stored as
+    // deviations from the ambient, so that zero flows in where a side is open; walls are insulated.
     Borders scalar_borders() const;
-    // Component `axis` of the velocity: zero gradient at open sides, mirrored at walls.
+    // Component `axis` of the velocity: zero gradient at open sides, mirrored at walls; beyond an
+    // inflow as on it.
     Borders velocity_borders(int axis) const;
+    // Zero outside open sides, without a gradient at walls and inflows.
+    Borders pressure_borders() const;
     Sides pressure_sides() const;
 };
 

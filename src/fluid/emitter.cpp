@@ -27,13 +27,17 @@ const Table<EmitterParams>& emitter_table() {
     using P = EmitterParams;
     static const Table<P> table =
         Table<P>("source", "A place that imposes density, temperature or velocity on the fluid")
-            .choice("shape", &P::kind, {{"sphere", EmitterKind::Sphere}, {"box", EmitterKind::Box}},
+            .choice("shape", &P::kind,
+                    {{"sphere", EmitterKind::Sphere},
+                     {"box", EmitterKind::Box},
+                     {"mesh", EmitterKind::Mesh, "what a closed mesh encloses"}},
                     {.help = "What it looks like"})
-            .add("position", &P::position, {.unit = "m", .help = "Centre"})
+            .add("position", &P::position, {.unit = "m", .help = "Centre; of a mesh its origin"})
             .add("radius", &P::radius,
                  {.unit = "m", .help = "Radius of a sphere", .min = 0, .min_open = true})
             .add("size", &P::size,
                  {.unit = "m", .help = "Edges of a box", .min = 0, .min_open = true})
+            .sub("mesh", &P::mesh, mesh_shape_table(), {.help = "The mesh of a mesh"})
             .add("edge", &P::edge,
                  {.unit = "m", .help = "Width of the soft edge, at least one cell", .min = 0})
             .add("density", &P::density, {.help = "Smoke that it gives", .min = 0})
@@ -49,6 +53,9 @@ const Table<EmitterParams>& emitter_table() {
             .check([](const P& p, const Fail& fail) {
                 if (!p.density && !p.temperature && !p.velocity) {
                     fail("", "gives nothing", "set density, temperature or velocity");
+                }
+                if (p.kind == EmitterKind::Mesh && p.mesh.file.empty()) {
+                    fail("mesh", "has no file", "set mesh = { file = \"...\" }");
                 }
             });
     return table;
@@ -82,11 +89,16 @@ Shape shape_of(const EmitterParams& p, double time) {
 // One source during one step.
 struct Emitters::Active {
     const EmitterParams& params;
+    const DistanceLattice& body;  // of a mesh
+    Vec3d position;
     Shape shape;
     double time, dt, rate, frame_time, edge;
 
-    Active(const EmitterParams& p, double t, double step, double frame, double cell)
+    Active(const EmitterParams& p, const DistanceLattice& b, double t, double step, double frame,
+           double cell)
         : params(p),
+          body(b),
+          position(p.position.at(t)),
           shape(shape_of(p, t)),
           time(t),
           dt(step),
@@ -94,9 +106,16 @@ struct Emitters::Active {
           frame_time(frame),
           edge(std::max(p.edge, cell)) {}
 
+    bool is_mesh() const { return params.kind == EmitterKind::Mesh; }
+    // Metres to its surface, negative inside; for a mesh from half its edge on any larger distance.
+    double distance(const Vec3d& p) const {
+        return is_mesh() ? body.at(p - position) : signed_distance(shape, p);
+    }
     // Cells that it reaches.
     Box3i reach(const Domain& domain) const {
-        const Box3d box = bounds(shape);
+        Box3d box = bounds(shape);
+        if (is_mesh())
+            box = {params.body->bounds().lo + position, params.body->bounds().hi + position};
         const Vec3d lo = (box.lo - Vec3d(edge) - domain.origin) / domain.h,
                     hi = (box.hi + Vec3d(edge) - domain.origin) / domain.h;
         Box3i cells{floor(lo), floor(hi) + Vec3i(2)};
@@ -107,7 +126,7 @@ struct Emitters::Active {
     // part m of a cell weakens the rate; for Set, -ln(1 - m) per frame lets the inside follow at
     // once.
     float pull(const Vec3d& p) const {
-        const double m = std::clamp(0.5 - signed_distance(shape, p) / edge, 0.0, 1.0);
+        const double m = std::clamp(0.5 - distance(p) / edge, 0.0, 1.0);
         if (m == 0) return 0;
         if (params.mode == EmitterMode::Pull) {
             return static_cast<float>(-std::expm1(-rate * m * dt));
@@ -122,9 +141,9 @@ struct Emitters::Active {
     }
 };
 
-Emitters::Emitters(std::vector<EmitterParams> emitters, double ambient_temperature,
-                   double frame_time)
-    : emitters_(std::move(emitters)), ambient_(ambient_temperature), frame_time_(frame_time) {
+Emitters::Emitters(std::vector<EmitterParams> emitters, double ambient, double frame_time,
+                   double cell)
+    : emitters_(std::move(emitters)), ambient_(ambient), frame_time_(frame_time) {
     const auto bad = [](const char* what) {
         throw Error(ErrorKind::Usage, "source", what, "give a number that is larger than 0");
     };
@@ -142,13 +161,19 @@ Emitters::Emitters(std::vector<EmitterParams> emitters, double ambient_temperatu
         if (!(e.edge >= 0)) bad("the width of an edge is negative");
         if (e.noise.amplitude != 0 && !(e.noise.scale > 0))
             bad("the scale of noise is not positive");
+        DistanceLattice& body = bodies_.emplace_back();
+        if (e.kind != EmitterKind::Mesh) continue;
+        if (!e.body) bad("a mesh is missing");
+        // Half the width of the edge is all that matters, and what lies within it varies by cells.
+        body = DistanceLattice(*e.body, cell, std::max(e.edge, cell));
     }
 }
 
 void Emitters::apply(const Domain& domain, const BlockMap& blocks, double time, double dt,
                      SparseField& density, SparseField& temperature, FaceField& velocity) const {
-    for (const EmitterParams& e : emitters_) {
-        const Active source(e, time, dt, frame_time_, domain.h);
+    for (std::size_t i = 0; i < emitters_.size(); ++i) {
+        const EmitterParams& e = emitters_[i];
+        const Active source(e, bodies_[i], time, dt, frame_time_, domain.h);
         const Box3i reach = source.reach(domain);
         const auto pull_scalar = [&](int block, SparseField& field, double target, int channel) {
             for_cells(intersection(reach, blocks.cells(block)), [&](const Vec3i& c) {

@@ -4,12 +4,14 @@
 #include <optional>
 
 #include "fluid/advect.h"
+#include "fluid/procedural/params.h"
 #include "math/keyframes.h"
+#include "shape/distance_lattice.h"
 #include "shape/shape.h"
 
 namespace gischt {
 
-enum class EmitterKind { Sphere, Box };
+enum class EmitterKind { Sphere, Box, Mesh };
 enum class EmitterMode { Pull, Set };
 
 // Animated noise that multiplies what a source gives by 1 + amplitude noise, noise in [-1,1].
@@ -25,9 +27,11 @@ const Table<EmitterNoise>& emitter_noise_table();
 // A place where a scene's values are imposed on the fluid. What is unset is left alone.
 struct EmitterParams {
     EmitterKind kind = EmitterKind::Sphere;
-    Keyed<Vec3d> position;                     // m, centre
-    Keyed<double> radius = 0.25;               // m, sphere
-    Keyed<Vec3d> size = Vec3d(0.5);            // m, edges of a box
+    Keyed<Vec3d> position;           // m, centre; of a mesh its origin
+    Keyed<double> radius = 0.25;     // m, sphere
+    Keyed<Vec3d> size = Vec3d(0.5);  // m, edges of a box
+    MeshShapeParams mesh;
+    std::shared_ptr<const MeshDistance> body;  // of a mesh: what `mesh` names, scaled and turned
     double edge = 0;                           // m, width of the soft edge; at least one cell
     std::optional<Keyed<double>> density;      // 1
     std::optional<Keyed<double>> temperature;  // K
@@ -43,8 +47,10 @@ const Table<EmitterParams>& emitter_table();
 // the time steps, the same time gives the same values. Noise animates as blended slices.
 class Emitters {
   public:
-    // `frame_time`: duration of a frame, s. Throws Error{Usage} on negative rates and sizes.
-    Emitters(std::vector<EmitterParams> emitters, double ambient_temperature, double frame_time);
+    // `frame_time`: duration of a frame, s; `cell`: edge of the fluid's cells, m. Throws
+    // Error{Usage} on negative rates and sizes, and for a mesh without a body.
+    Emitters(std::vector<EmitterParams> emitters, double ambient_temperature, double frame_time,
+             double cell);
 
     // Acts for dt seconds up to `time`. `temperature` is T - T_ambient.
     void apply(const Domain& domain, const BlockMap& blocks, double time, double dt,
@@ -60,6 +66,7 @@ class Emitters {
     struct Active;
 
     std::vector<EmitterParams> emitters_;
+    std::vector<DistanceLattice> bodies_;  // one per emitter, of meshes
     double ambient_, frame_time_;
 };
 

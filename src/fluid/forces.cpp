@@ -82,6 +82,7 @@ class BlockForces {
         for (int a = 0; a < domain_.axes(); ++a) {
             float* faces = scratch.array(slot_velocity + a, lattice.count());
             gather_block_faces(in, a, lattice, domain_.velocity_borders(a), faces);
+            add_side_velocity(domain_, a, lattice, faces);
             u[static_cast<std::size_t>(a)] = faces;
         }
         std::array<const float*, 3> force{};
@@ -151,6 +152,7 @@ class BlockForces {
         const auto by_curl = static_cast<float>(half * forces_.confinement * domain_.h);
         const auto relaxed = static_cast<float>(-std::expm1(-forces_.wind_rate * dt_));
         const auto wind = static_cast<float>(forces_.wind[axis]);
+        const auto gain = static_cast<float>(dt_ * forces_.acceleration[axis]);
         for_rows(lattice, faces, [&](std::ptrdiff_t at, int n) {
             float* __restrict to = out + at;
             for (int i = 0; i < n; ++i) to[i] = u[at + i];
@@ -160,6 +162,9 @@ class BlockForces {
             if (rho && by_density != 0) add(rho + at, by_density);
             if (theta && by_heat != 0) add(theta + at, by_heat);
             if (force[0]) add(force[static_cast<std::size_t>(axis)] + at, by_curl);
+            if (gain != 0) {
+                for (int i = 0; i < n; ++i) to[i] += gain;
+            }
             if (relaxed != 0) {
                 for (int i = 0; i < n; ++i) to[i] += (wind - to[i]) * relaxed;
             }

@@ -8,6 +8,7 @@ namespace gischt {
 // What acts on the fluid at one moment, per unit mass.
 struct Forces {
     Vec3d gravity;                 // m/s^2
+    Vec3d acceleration;            // m/s^2, the same everywhere
     double density_weight = 0;     // kappa: relative weight of density 1 (1)
     double thermal_expansion = 0;  // beta, 1/K
     double confinement = 0;        // epsilon, 1/s
@@ -17,8 +18,9 @@ struct Forces {
 
 // One explicit step of the forces from `in` to `out`: buoyancy g (kappa density - beta (T - T_a)),
 // the mean of both cells of a face; vorticity confinement epsilon h (N x omega), N being the
-// direction in which |omega| grows (Fedkiw, Stam, Jensen 2001), a rate like the others; and the
-// relaxation towards the wind, exact in dt. `density` may be null; `temperature` is T - T_ambient.
+// direction in which |omega| grows (Fedkiw, Stam, Jensen 2001), a rate like the others; a
+// uniform acceleration; and the relaxation towards the wind, exact in dt. `density` may be null;
+// `temperature` is T - T_ambient.
 void apply_forces(const Domain& domain, const BlockMap& blocks, const Forces& forces, double dt,
                   const SparseField& density, const SparseField& temperature, const FaceField& in,
                   FaceField& out);

@@ -107,7 +107,7 @@ double PressureProjection::subtract_gradient(FaceField& velocity, const TileFiel
         const Box3i cells = blocks_.cells(block);
         const Lattice lattice = Lattice::around(cells, Vec3i(1), true, domain_.is_2d());
         float* p = scratch.array(slot_potential, lattice.count());
-        gather_block(potential, lattice, domain_.scalar_borders(), p);
+        gather_block(potential, lattice, domain_.pressure_borders(), p);
         const bool cut = !solids_.is_empty() && solids_.is_cut(block);
         double square = 0;
         Vec3f& speed = speeds[static_cast<std::size_t>(block)];

@@ -43,6 +43,14 @@ const SmokeParams& checked(const SmokeParams& p, const FluidWorld& world) {
     return p;
 }
 
+// Diffusion is solved a digit better than the pressure: what is left of a steady flow is an error
+// of some n^2 / 8 times the residual over n cells.
+SolveLimits diffusion_limits(const SmokeParams& p) {
+    SolveLimits limits;
+    limits.tolerance = std::clamp(0.1 * p.pressure_tolerance, 1e-7, limits.tolerance);
+    return limits;
+}
+
 float decay(const std::optional<double>& half_life, double dt) {
     return half_life ? static_cast<float>(std::exp(-std::numbers::ln2 * dt / *half_life)) : 1.0f;
 }
@@ -65,8 +73,8 @@ SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
       world_(world),
       domain_(params.domain),
       blocks_(domain_.map),
-      solids_(domain_, blocks_, world.solids),
-      emitters_(params.sources, params.ambient_temperature, 1 / world.fps),
+      solids_(domain_, blocks_, world.solids, params.solid_slip, params.ambient_temperature),
+      emitters_(params.sources, params.ambient_temperature, 1 / world.fps, domain_.h),
       projection_(domain_, blocks_, solids_),
       speeds_(static_cast<std::size_t>(blocks_.size())),
       velocity_predicted_(domain_.map),
@@ -75,6 +83,7 @@ SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
       density_next_(blocks_, domain_.map),
       temperature_predicted_(blocks_, domain_.map),
       temperature_next_(blocks_, domain_.map) {
+    hold_sides(0);
     state_.velocity = FaceField(domain_.map);
     state_.potential = TileField<float>(domain_.map);
     state_.density = SparseField(blocks_, domain_.map);
@@ -91,11 +100,14 @@ SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
 Vec3d SmokeSolver::initial_velocity(const Vec3d& p) const {
     if (params_.initial_flow == InitialFlow::Uniform) return params_.initial_velocity;
     const Vec3d size = domain_.h * Vec3d(domain_.cells), q = 2 * pi * (p - domain_.origin) / size;
-    const double strength =
-        params_.initial_velocity.x * (domain_.is_2d() ? 1.0 : std::cos(q.z));
+    const double strength = params_.initial_velocity.x * (domain_.is_2d() ? 1.0 : std::cos(q.z));
     // Unequal edges: the second component makes up for the other length.
     return strength * Vec3d(std::sin(q.x) * std::cos(q.y),
                             -std::cos(q.x) * std::sin(q.y) * size.y / size.x, 0);
+}
+
+void SmokeSolver::hold_sides(double time) {
+    domain_.held = side_values_at(domain_, time, params_.ambient_temperature);
 }
 
 double SmokeSolver::thermal_expansion() const {
@@ -107,6 +119,7 @@ StepStatistics SmokeSolver::step(double dt, Job& job) {
         throw Error(ErrorKind::Usage, "smoke", fmt::format("a step of {} s is impossible", dt));
     }
     const double time = state_.time + dt;
+    hold_sides(time);
     const ProjectionResult projected = is_high() ? step_high(dt, job) : step_standard(dt, job);
     state_.time = time;
     state_.steps += 1;
@@ -170,16 +183,19 @@ void SmokeSolver::carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds,
     std::array<AdvectedScalar, 2> scalars{
         AdvectedScalar{&state_.density, &density_predicted_, &density_next_,
                        scheme(params_.density_advection), decay(params_.density_half_life, dt),
-                       density_floor},
+                       density_floor, &domain_.held.density},
         AdvectedScalar{&state_.temperature, &temperature_predicted_, &temperature_next_,
                        scheme(params_.temperature_advection),
-                       decay(params_.temperature_half_life, dt), temperature_floor}};
+                       decay(params_.temperature_half_life, dt), temperature_floor,
+                       &domain_.held.temperature}};
     const FaceField* fraction = solids_.is_empty() ? nullptr : &solids_.fraction();
     for (AdvectedScalar& s : scalars) {
         if (s.scheme == AdvectionScheme::Conservative) {
             s.floor *= conservative_floor;
             const FaceField& through = velocity.through ? *velocity.through : *velocity.now;
             transport(domain_, blocks_, through, speeds, fraction, dt, s, job);
+        } else if (fraction != nullptr && s.now == &state_.temperature) {
+            solids_.extrapolate_heat(*s.now);
         } else if (fraction != nullptr) {
             solids_.extrapolate(*s.now);
         }
@@ -189,44 +205,39 @@ void SmokeSolver::carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds,
 
 void SmokeSolver::diffuse_scalars(double dt, SmokeHistory* history, Job& job) {
     const PhaseTimer timer(job, "diffusion");
-    const ScalarSides sides{domain_.scalar_borders(), {}};
-    const FaceField* fraction = solids_.is_empty() ? nullptr : &solids_.fraction();
-    const SolveLimits limits;
-    const auto spread = [&](SparseField& field, double diffusivity, float floor,
-                            TileField<float> SmokeHistory::*kick) {
+    const SolveLimits limits = diffusion_limits(params_);
+    solids_.hold_heat(state_.temperature);
+    const auto spread = [&](SparseField& field, const ScalarHold& held, const ScalarSolids& solids,
+                            double diffusivity, float floor, TileField<float> SmokeHistory::*kick) {
         if (diffusivity == 0) return;
         if (history) history->*kick = field.values;
         const double number = diffusivity * dt / (domain_.h * domain_.h);
-        diffuse(field.values, number, sides, fraction, limits, job);
+        diffuse(field.values, number, scalar_sides(domain_, held), solids, limits, job);
         if (history) {
             auto& k = (history->*kick).values();
             for (std::size_t i = 0; i < k.size(); ++i) k[i] = field.values.values()[i] - k[i];
         }
         drop_small(blocks_, field, floor);
     };
-    spread(state_.density, params_.smoke_diffusivity, density_floor, &SmokeHistory::density_kick);
-    spread(state_.temperature, params_.thermal_diffusivity, temperature_floor,
-           &SmokeHistory::temperature_kick);
+    spread(state_.density, domain_.held.density, solids_.smoke_solids(), params_.smoke_diffusivity,
+           density_floor, &SmokeHistory::density_kick);
+    spread(state_.temperature, domain_.held.temperature, solids_.heat_solids(),
+           params_.thermal_diffusivity, temperature_floor, &SmokeHistory::temperature_kick);
 }
 
 void SmokeSolver::diffuse_velocity(double dt, Job& job) {
     if (params_.viscosity == 0) return;
     const PhaseTimer timer(job, "viscosity");
-    VelocitySides sides;
-    for (std::size_t s = 0; s < 6; ++s) {
-        const std::array<Border, 4> rule{Border::Clamp, Border::Even, Border::Odd,
-                                         Border::Periodic};
-        sides.rule.side[s] = rule[static_cast<std::size_t>(domain_.side[s])];
-    }
     close_sides(domain_, state_.velocity);
-    diffuse(state_.velocity, params_.viscosity * dt / (domain_.h * domain_.h), sides,
-            solids_.is_empty() ? nullptr : &solids_.fraction(), SolidSlip::FreeSlip, SolveLimits{},
-            job);
+    solids_.hold(state_.velocity);
+    diffuse(state_.velocity, params_.viscosity * dt / (domain_.h * domain_.h),
+            velocity_sides(domain_), solids_.velocity_solids(), diffusion_limits(params_), job);
 }
 
 Forces SmokeSolver::forces_at(double time) const {
     Forces f;
     f.gravity = world_.gravity;
+    f.acceleration = params_.body_acceleration.at(time);
     f.density_weight = params_.density_weight;
     f.thermal_expansion = thermal_expansion();
     f.confinement = params_.vorticity_confinement.at(time);
@@ -265,21 +276,26 @@ ProjectionResult SmokeSolver::project(double dt, Job& job) {
 void SmokeSolver::set_hand(const std::vector<EmitterParams>& hand) {
     std::vector<EmitterParams> all = params_.sources;
     all.insert(all.end(), hand.begin(), hand.end());
-    emitters_ = Emitters(std::move(all), params_.ambient_temperature, 1 / world_.fps);
+    emitters_ = Emitters(std::move(all), params_.ambient_temperature, 1 / world_.fps, domain_.h);
 }
 
 double SmokeSolver::longest_step() const {
-    double speed = std::max(emitters_.top_speed(state_.time), solids_.top_speed());
+    double speed = std::max(
+        {emitters_.top_speed(state_.time), solids_.top_speed(), top_side_speed(domain_.held)});
     for (const Vec3f& s : speeds_) {
         speed = std::max(speed, static_cast<double>(max_component(s)));
     }
-    const double density = std::max<double>(largest(blocks_, state_.density),
-                                            emitters_.top_density(state_.time)),
-                 heat = std::max<double>(largest(blocks_, state_.temperature),
-                                         emitters_.top_temperature(state_.time));
+    const double density = std::max({static_cast<double>(largest(blocks_, state_.density)),
+                                     emitters_.top_density(state_.time),
+                                     top_side_value(domain_.held.density)}),
+                 heat = std::max({static_cast<double>(largest(blocks_, state_.temperature)),
+                                  emitters_.top_temperature(state_.time),
+                                  top_side_value(domain_.held.temperature),
+                                  solids_.top_temperature()});
     const double acceleration =
         max_component(abs(world_.gravity)) *
-        (std::abs(params_.density_weight) * density + thermal_expansion() * heat);
+            (std::abs(params_.density_weight) * density + thermal_expansion() * heat) +
+        max_component(abs(params_.body_acceleration.at(state_.time)));
     // (v + a dt) dt = cfl h, in the form that stays finite for small a.
     const double way = params_.cfl * domain_.h;
     const double root = speed + std::sqrt(speed * speed + 4 * acceleration * way);
@@ -341,6 +357,7 @@ void SmokeSolver::set_state(SmokeState state) {
     drop_small(blocks_, state_.density, 0);
     drop_small(blocks_, state_.temperature, 0);
     speeds_ = measure_speeds(domain_, blocks_, state_.velocity);
+    hold_sides(state_.time);
     if (solids_.update(state_.time)) projection_.update_solids();
 }
 

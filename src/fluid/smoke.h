@@ -80,6 +80,7 @@ class SmokeSolver {
     double pressure_bytes_per_cell() const { return projection_.bytes_per_cell_iteration(); }
 
   private:
+    void hold_sides(double time);
     bool is_high() const { return params_.accuracy == Accuracy::High; }
     ProjectionResult step_standard(double dt, Job& job);
     void carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds, const AdvectOptions& options,

@@ -61,6 +61,7 @@ void for_blocks_with_velocity(const SmokeSolver& solver, F&& f) {
             float* faces = scratch.array(a, lattice.count());
             gather_block_faces(solver.state().velocity, a, lattice, domain.velocity_borders(a),
                                faces);
+            add_side_velocity(domain, a, lattice, faces);
             u[static_cast<std::size_t>(a)] = faces;
         }
         f(block, lattice, u, scratch);

@@ -82,6 +82,8 @@ const Table<SmokeParams>& smoke_table() {
             .add("vorticity_confinement", &P::vorticity_confinement,
                  {.unit = "1/s", .help = "Feeds back the eddies that the grid loses", .min = 0})
             .sub("wind", &P::wind, wind_table(), {.help = "A wind with gusts"})
+            .add("body_acceleration", &P::body_acceleration,
+                 {.unit = "m/s^2", .help = "Of all air; drives a periodic channel"})
             .add("density_half_life", &P::density_half_life,
                  {.unit = "s", .help = "Of smoke; unset: it stays", .min = 0, .min_open = true})
             .add("temperature_half_life", &P::temperature_half_life,
@@ -92,6 +94,10 @@ const Table<SmokeParams>& smoke_table() {
                  {.unit = "m^2/s", .help = "Spreads heat", .min = 0})
             .add("smoke_diffusivity", &P::smoke_diffusivity,
                  {.unit = "m^2/s", .help = "Spreads smoke", .min = 0})
+            .choice("solid_slip", &P::solid_slip,
+                    {{"free_slip", SolidSlip::FreeSlip, "it glides along them"},
+                     {"no_slip", SolidSlip::NoSlip, "it sticks to them, as far as it is viscous"}},
+                    {.help = "What the fluid does at the surface of solids"})
             .add("initial_velocity", &P::initial_velocity,
                  {.unit = "m/s", .help = "Of all air in the beginning"})
             .choice("initial_flow", &P::initial_flow,

@@ -7,6 +7,7 @@
 #include "fluid/advect_kernel.h"
 #include "fluid/domain.h"
 #include "fluid/emitter.h"
+#include "fluid/solid.h"
 
 namespace gischt {
 
@@ -51,8 +52,10 @@ struct SmokeParams {
     std::optional<double> thermal_expansion;    // 1/K; unset: 1 / ambient_temperature
     Keyed<double> vorticity_confinement = 0.0;  // epsilon, 1/s
     WindParams wind;
+    Keyed<Vec3d> body_acceleration;  // m/s^2, of all air, as by a pressure gradient from outside
     std::optional<double> density_half_life, temperature_half_life;        // s
     double viscosity = 0, thermal_diffusivity = 0, smoke_diffusivity = 0;  // m^2/s
+    SolidSlip solid_slip = SolidSlip::FreeSlip;
     Vec3d initial_velocity;  // m/s; of vortices x is the largest speed
     InitialFlow initial_flow = InitialFlow::Uniform;
 

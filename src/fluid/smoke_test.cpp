@@ -394,7 +394,7 @@ TEST(Emitters, GiveTheSameInAnySteps) {
         e.velocity = Keyed<Vec3d>(Vec3d(0, 0, 2));
         e.mode = mode;
         e.rate = 5.0;
-        const Emitters emitters({e}, 293.15, 1.0 / 24);
+        const Emitters emitters({e}, 293.15, 1.0 / 24, domain.h);
         std::array<SparseField, 2> density{SparseField(blocks, domain.map),
                                            SparseField(blocks, domain.map)},
             heat = density;

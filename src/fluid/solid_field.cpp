@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid/solid_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -44,54 +45,94 @@ float open_fraction(float a, float b, float c, float d) {
 }
 
 SolidField::SolidField(const Domain& domain, const BlockMap& blocks,
-                       std::vector<SolidParams> solids)
-    : domain_(domain), blocks_(blocks), solids_(std::move(solids)) {
+                       std::vector<SolidParams> solids, SolidSlip slip, double ambient_temperature)
+    : domain_(domain),
+      blocks_(blocks),
+      solids_(std::move(solids)),
+      slip_(slip),
+      ambient_(ambient_temperature) {
     for (const SolidParams& s : solids_) {
         check_solid(s);
         is_moving_ |= s.is_moving();
+        holds_heat_ |= s.temperature.has_value();
+        has_keyed_heat_ |= s.temperature && !s.temperature->is_constant();
     }
     if (!solids_.empty()) update(0);
 }
 
 bool SolidField::update(double time) {
-    if (solids_.empty() || (!shapes_.empty() && (!is_moving_ || time == time_))) return false;
+    const bool is_first = shapes_.empty(), is_new = time != time_;
+    if (solids_.empty() || (!is_first && !is_new)) return false;
     time_ = time;
+    if (!is_first && !is_moving_) {
+        if (has_keyed_heat_) update_heat();
+        return false;
+    }
     shapes_.clear();
-    for (const SolidParams& s : solids_) shapes_.push_back(s.shape_at(time));
+    for (const SolidParams& s : solids_) shapes_.emplace_back(s, time);
     fraction_ = FaceField(domain_.map, 1.0f);
     cut_.assign(static_cast<std::size_t>(blocks_.size()), 0);
     parallel_for(blocks_.size(), 1, [&](int block) { cut_block(block); });
 
-    const Box3i cells = reach_of_solids();
-    center_ghosts_.find(*domain_.map, -1, cells, ghost_layers,
-                        [&](const Vec3i& c) { return signed_distance(domain_.center_of(c)) < 0; });
-    for (int a = 0; a < domain_.axes(); ++a) {
-        const Box3i faces = cells.is_empty() ? cells : domain_.faces_of(cells, a);
-        face_ghosts_[static_cast<std::size_t>(a)].find(
-            *domain_.map, a, faces, ghost_layers,
-            [&](const Vec3i& f) { return fraction_.get(a, f) == 0; });
-    }
+    const auto is_covered = [&](const Vec3i& c) {
+        if (!is_cut(blocks_.find(c / blocks_.extent()))) return false;
+        const Vec3d p = domain_.center_of(c);
+        return std::ranges::any_of(shapes_, [&](const PlacedSolid& s) { return s.is_inside(p); });
+    };
+    center_ghosts_.find(*domain_.map, -1, reach_of_solids(), ghost_layers, is_covered);
+    find_faces();
+    if (holds_heat_) update_heat();
     return true;
+}
+
+void SolidField::find_faces() {
+    const bool sticks = slip_ == SolidSlip::NoSlip;
+    if (sticks) {
+        // Far from all solids any positive distance does.
+        distance_ = FaceField(domain_.map, std::numeric_limits<float>::max());
+        if (is_moving_) wall_ = FaceField(domain_.map, 0.0f);
+        parallel_for(blocks_.size(), 1, [&](int block) { measure_block(block); });
+    }
+    const Box3i cells = reach_of_solids();
+    for (int a = 0; a < domain_.axes(); ++a) {
+        const auto s = static_cast<std::size_t>(a);
+        const Box3i faces = cells.is_empty() ? cells : domain_.faces_of(cells, a);
+        const FaceField& open = sticks ? distance_ : fraction_;
+        face_ghosts_[s].find(*domain_.map, a, faces, ghost_layers,
+                             [&](const Vec3i& f) { return open.get(a, f) <= 0; });
+        if (sticks) {
+            find_no_slip_ghosts(a);
+        } else {
+            find_normals(a);
+        }
+    }
 }
 
 double SolidField::signed_distance(const Vec3d& point) const {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Shape& s : shapes_) nearest = std::min(nearest, gischt::signed_distance(s, point));
+    for (const PlacedSolid& s : shapes_) nearest = std::min(nearest, s.signed_distance(point));
     return nearest;
+}
+
+// Index of the nearest solid, of those that hold a temperature only when asked to; -1 for none.
+int SolidField::nearest(const Vec3d& point, bool held_only) const {
+    int found = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < shapes_.size(); ++s) {
+        if (held_only && !solids_[s].temperature) continue;
+        const double distance = shapes_[s].signed_distance(point);
+        if (distance < least) {
+            least = distance;
+            found = static_cast<int>(s);
+        }
+    }
+    return found;
 }
 
 Vec3d SolidField::velocity(const Vec3d& point) const {
     if (!is_moving_) return {};
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t s = 0; s < shapes_.size(); ++s) {
-        const double distance = gischt::signed_distance(shapes_[s], point);
-        if (distance < least) {
-            least = distance;
-            nearest = s;
-        }
-    }
-    return solids_[nearest].velocity_at(time_, point);
+    const int s = nearest(point, false);
+    return s < 0 ? Vec3d{} : solids_[static_cast<std::size_t>(s)].velocity_at(time_, point);
 }
 
 double SolidField::top_speed() const {
@@ -100,7 +141,7 @@ double SolidField::top_speed() const {
     const Vec3d lo = domain_.origin, hi = lo + domain_.h * Vec3d(domain_.cells);
     double top = 0;
     for (std::size_t s = 0; s < shapes_.size(); ++s) {
-        const Box3d box = bounds(shapes_[s]), part = intersection(box, Box3d{lo, hi});
+        const Box3d box = shapes_[s].bounds(), part = intersection(box, Box3d{lo, hi});
         if (min_component(part.size()) < 0) continue;
         for (int c = 0; c < 8; ++c) {
             const Vec3d corner{c & 1 ? part.hi.x : part.lo.x, c & 2 ? part.hi.y : part.lo.y,
@@ -115,8 +156,8 @@ double SolidField::top_speed() const {
 Box3i SolidField::reach_of_solids() const {
     Box3i all = Box3i::empty();
     const Box3d domain{{}, Vec3d(domain_.cells)};
-    for (const Shape& s : shapes_) {
-        const Box3d box = bounds(s);
+    for (const PlacedSolid& s : shapes_) {
+        const Box3d box = s.bounds();
         Box3d part{(box.lo - domain_.origin) / domain_.h, (box.hi - domain_.origin) / domain_.h};
         part = intersection(part, domain);
         if (min_component(part.size()) < 0) continue;
@@ -160,87 +201,6 @@ void SolidField::cut_faces(int block, int axis, const std::vector<float>& distan
         const float open = open_fraction(phi(f), phi(f + u), phi(f + u + v), phi(f + v));
         fraction_.ref(axis, f) = open < least_fraction ? 0.0f : open;
     });
-}
-
-void SolidField::extrapolate(FaceField& velocity) const {
-    for (int a = 0; a < domain_.axes(); ++a) {
-        const auto s = static_cast<std::size_t>(a);
-        face_ghosts_[s].extrapolate(velocity[a], &velocity.last[s]);
-        for (const Vec3i& f : face_ghosts_[s].deep()) {
-            velocity.ref(a, f) = static_cast<float>(this->velocity(domain_.face_center(a, f))[a]);
-        }
-    }
-    slide(velocity);
-}
-
-// Gives the ghosts the solid's velocity along the normal of its surface.
-void SolidField::slide(FaceField& velocity) const {
-    const auto component_at = [&](int a, int face_axis, const Vec3i& face) {
-        if (a == face_axis) return static_cast<double>(velocity.get(a, face));
-        // The four faces along a around this one, as far as they exist.
-        double sum = 0;
-        int count = 0;
-        for (const int back : {-1, 0}) {
-            for (const int up : {0, 1}) {
-                Vec3i f = face;
-                f[face_axis] += back;
-                f[a] += up;
-                if (f[face_axis] < 0 || f[face_axis] >= domain_.cells[face_axis]) continue;
-                sum += velocity.get(a, f);
-                ++count;
-            }
-        }
-        return sum / count;
-    };
-    std::array<std::vector<float>, 3> slid;
-    for (int a = 0; a < domain_.axes(); ++a) {
-        const auto& points = face_ghosts_[static_cast<std::size_t>(a)].points();
-        auto& out = slid[static_cast<std::size_t>(a)];
-        out.resize(points.size());
-        parallel_for(static_cast<int>(points.size()), 256, [&](int i) {
-            const Vec3i& f = points[static_cast<std::size_t>(i)];
-            const Vec3d p = domain_.face_center(a, f), solid = this->velocity(p);
-            Vec3d v, normal;
-            for (int b = 0; b < domain_.axes(); ++b) {
-                v[b] = component_at(b, a, f);
-                Vec3d step;
-                step[b] = 0.5 * domain_.h;
-                normal[b] = signed_distance(p + step) - signed_distance(p - step);
-            }
-            const double size = length(normal);
-            if (size > 0) v -= normal * (dot(v - solid, normal) / (size * size));
-            out[static_cast<std::size_t>(i)] = static_cast<float>(v[a]);
-        });
-    }
-    for (int a = 0; a < domain_.axes(); ++a) {
-        const auto& points = face_ghosts_[static_cast<std::size_t>(a)].points();
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            velocity.ref(a, points[i]) = slid[static_cast<std::size_t>(a)][i];
-        }
-    }
-}
-
-void SolidField::extrapolate(SparseField& scalar) const {
-    center_ghosts_.extrapolate(scalar.values, nullptr);
-    for (const Vec3i& c : center_ghosts_.deep()) scalar.values.ref(c) = 0;
-    for (const Vec3i& c : center_ghosts_.points()) {
-        auto& active = scalar.active[static_cast<std::size_t>(blocks_.find(c / blocks_.extent()))];
-        if (!active && scalar.values.get(c) != 0) active = 1;
-    }
-}
-
-double SolidField::sum_inside(const TileField<float>& scalar) const {
-    double sum = 0;
-    for (const auto* points : {&center_ghosts_.points(), &center_ghosts_.deep()}) {
-        for (const Vec3i& c : *points) sum += scalar.get(c);
-    }
-    return sum;
-}
-
-void SolidField::clear_inside(TileField<float>& scalar) const {
-    for (const auto* points : {&center_ghosts_.points(), &center_ghosts_.deep()}) {
-        for (const Vec3i& c : *points) scalar.ref(c) = 0;
-    }
 }
 
 }  // namespace gischt

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "fluid/sides.h"
+
 namespace gischt {
 namespace {
 
@@ -22,8 +24,12 @@ inline float half_slope(float below, float above) {
 class Transport {
   public:
     Transport(const Domain& domain, const BlockMap& blocks, const FaceField& velocity,
-              const FaceField* fraction)
-        : domain_(domain), blocks_(blocks), velocity_(velocity), fraction_(fraction) {}
+              const FaceField* fraction, const ScalarHold* sides)
+        : domain_(domain),
+          blocks_(blocks),
+          velocity_(velocity),
+          fraction_(fraction),
+          sides_(sides) {}
 
     // The block itself or one beside it holds anything.
     bool is_reached(const SparseField& q, int block) const {
@@ -75,7 +81,8 @@ class Transport {
         const Box3i cells = blocks_.cells(block);
         const Lattice own{cells}, around = Lattice::around(cells, Vec3i(2), false, domain_.is_2d());
         float* value = scratch.array(slot_value, around.count());
-        gather_block(q.values, around, domain_.scalar_borders(), value);
+        gather_block(q.values, around, sides_ ? sides_->borders : domain_.scalar_borders(), value);
+        if (sides_) add_side_scalar(domain_, *sides_, around, value);
         for_rows(cells, [&](const Vec3i& first, int n) {
             std::copy_n(value + around.index(first), n, result + own.index(first));
         });
@@ -119,6 +126,7 @@ class Transport {
     const BlockMap& blocks_;
     const FaceField& velocity_;
     const FaceField* fraction_;
+    const ScalarHold* sides_;
 };
 
 // Largest sum of the speeds along the axes where anything is carried, m/s.
@@ -149,10 +157,11 @@ void finish(const BlockMap& blocks, const AdvectedScalar& q) {
 void transport(const Domain& domain, const BlockMap& blocks, const FaceField& velocity,
                const BlockSpeeds& speeds, const FaceField* fraction, double dt, AdvectedScalar& q,
                Job& job) {
-    const Transport work(domain, blocks, velocity, fraction);
+    const Transport work(domain, blocks, velocity, fraction, q.sides);
     double rest = dt;
     while (rest > 0) {
         job.check();
+        if (q.sides) activate_sides(domain, blocks, *q.sides, *q.now);
         // Anew after every step: smoke may reach faster air.
         const double speed = top_speed(work, blocks, speeds, *q.now);
         const double wanted = rest * speed / (largest_outflow * domain.h);

@@ -22,7 +22,7 @@ SmokeParams cavity(int resolution, double reynolds, Accuracy accuracy) {
     p.domain.resolution = resolution;
     p.domain.max = {1, 1, 0};
     p.domain.set_all_sides(SideKind::NoSlip);
-    p.domain.sides.y_max.velocity = Keyed<Vec3d>(Vec3d(1, 0, 0));
+    p.domain.sides.y_max.emplace().velocity = Keyed<Vec3d>(Vec3d(1, 0, 0));
     p.viscosity = 1 / reynolds;
     p.accuracy = accuracy;
     p.velocity_advection = AdvectionScheme::SemiLagrangian;
@@ -155,8 +155,8 @@ Convection heated_cavity(int resolution, double rayleigh) {
     p.domain.resolution = resolution;
     p.domain.max = {1, 1, 0};
     p.domain.set_all_sides(SideKind::NoSlip);
-    p.domain.sides.x_min.temperature = Keyed<double>(p.ambient_temperature + warm);
-    p.domain.sides.x_max.temperature = Keyed<double>(p.ambient_temperature - warm);
+    p.domain.sides.x_min.emplace().temperature = Keyed<double>(p.ambient_temperature + warm);
+    p.domain.sides.x_max.emplace().temperature = Keyed<double>(p.ambient_temperature - warm);
     p.viscosity = prandtl * alpha;
     p.thermal_diffusivity = alpha;
     p.thermal_expansion = rayleigh * p.viscosity * alpha / (g * 2 * warm);

@@ -50,7 +50,7 @@ struct DiscSurface : SheetPlace {
     double radius = 0.5;
 };
 enum class FileUp { Y, Z };
-// Triangles from a file. The smoke does not know them.
+// Triangles from a file. Smoke flows around closed ones.
 struct MeshSurface {
     std::string name;
     std::string file;

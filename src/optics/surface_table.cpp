@@ -186,7 +186,7 @@ const Table<DiscSurface>& disc_table() {
 
 const Table<MeshSurface>& mesh_table() {
     static const Table<MeshSurface> table =
-        Table<MeshSurface>("mesh", "Triangles from a file; fluids do not meet them")
+        Table<MeshSurface>("mesh", "Triangles from a file; smoke meets closed ones")
             .add("name", &MeshSurface::name, {.help = "For messages and --set"})
             .add("file", &MeshSurface::file,
                  {.help = "OBJ, PLY, or glTF 2 as .gltf or .glb", .required = true})

@@ -14,6 +14,7 @@
 #include "io/mesh_file.h"
 #include "optics/medium.h"
 #include "optics/moving_media.h"
+#include "optics/surface_content.h"
 
 namespace gischt {
 namespace {
@@ -75,6 +76,12 @@ Vec3d axis_angle_degrees(const Vec3d& euler) {
     return 180.0 * normalize(best);
 }
 
+bool has_inside(const Mesh& mesh) {
+    Mesh sound = mesh;
+    const MeshFaults faults = remove_faults(sound);
+    return faults.not_finite + faults.no_point == 0 && !sound.triangles.empty() && is_closed(mesh);
+}
+
 struct SolidOf {
     Vec3d up;
 
@@ -102,17 +109,36 @@ struct SolidOf {
         return p;
     }
     std::optional<SolidParams> operator()(const SheetPlace&) const { return std::nullopt; }
-    std::optional<SolidParams> operator()(const MeshSurface&) const { return std::nullopt; }
+    std::optional<SolidParams> operator()(const MeshSurface& s) const {
+        Job unheard;  // what is said of a mesh is about its colours
+        Mesh mesh = read_mesh(s.file, unheard).mesh;
+        // One without an inside is reported by report_unmet_solids().
+        if (!has_inside(mesh)) return std::nullopt;
+        MeshSurface still;
+        still.up = s.up;
+        SolidParams p;
+        p.kind = SolidKind::Mesh;
+        p.mesh = std::make_shared<MeshDistance>(
+            transformed(std::move(mesh), mesh_placement(still, 0, up)));
+        p.position = s.translate;
+        p.scale = s.scale;
+        p.rotation = s.rotate_degrees;
+        for (Vec3d& v : p.rotation.v) v = axis_angle_degrees(v);
+        return p;
+    }
 };
 
-// What stands in the way of a simulated fluid. Sheets have no inside that could, a boundary without
-// a surface is not there, and what a fluid fills does not keep it out.
+// A boundary without a surface is not there, and what a fluid fills does not keep it out.
+bool is_in_the_way(const SurfaceParams& s, const std::string& fluid) {
+    const Material& m = material_of(s);
+    const bool is_filled = !m.interior.empty() && m.interior == fluid;
+    return m.kind != MaterialKind::None && !is_filled;
+}
+
+// What stands in the way of a simulated fluid. Sheets have no inside that could.
 std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& fluid,
                                     const Vec3d& up) {
-    const Material& m = std::visit([](const auto& p) -> const Material& { return p.material; }, s);
-    const bool is_filled = !m.interior.empty() && m.interior == fluid;
-    if (m.kind == MaterialKind::None || is_filled) return std::nullopt;
-    return std::visit(SolidOf{up}, s);
+    return is_in_the_way(s, fluid) ? std::visit(SolidOf{up}, s) : std::nullopt;
 }
 
 // The vectors of a field under a linear map.
@@ -158,12 +184,13 @@ static std::shared_ptr<const Frame> placed(const std::shared_ptr<const Frame>& f
 struct SourceOf {
     const Scene& scene;
 
-    // The scene as a fluid of that name meets it.
-    FluidWorld world_of(const std::string& name) const {
+    // The scene as a fluid of that name meets it; particles meet no meshes.
+    FluidWorld world_of(const std::string& name, bool meets_meshes) const {
         FluidWorld world;
         world.fps = scene.fps;
         world.gravity = scene.gravity_vector();
         for (const SurfaceParams& s : scene.solids) {
+            if (!meets_meshes && std::holds_alternative<MeshSurface>(s)) continue;
             if (const auto solid = solid_of(s, name, scene.up_vector())) {
                 world.solids.push_back(*solid);
             }
@@ -171,7 +198,11 @@ struct SourceOf {
         return world;
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<SmokeParams>& f) const {
-        return std::make_unique<SmokeSource>(f.source, world_of(f.common.name));
+        SmokeParams params = f.source;
+        for (EmitterParams& e : params.sources) {
+            if (e.kind == EmitterKind::Mesh) e.body = body_of(e.mesh);
+        }
+        return std::make_unique<SmokeSource>(params, world_of(f.common.name, true));
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<ParticleParams>& f) const {
         ParticleInputs inputs;
@@ -181,7 +212,7 @@ struct SourceOf {
                                                               : Mesh{});
         }
         inputs.flow = flow_for(f.source.flow);
-        return std::make_unique<ParticleSource>(f.source, world_of(f.common.name),
+        return std::make_unique<ParticleSource>(f.source, world_of(f.common.name, false),
                                                 std::move(inputs));
     }
     // Frames of the fluid that carries particles, where the scene puts it. A fluid of the scene is
@@ -221,11 +252,7 @@ struct SourceOf {
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<ProceduralParams>& f) const {
         std::shared_ptr<const MeshDistance> mesh;
-        if (f.source.shape == ProceduralShape::Mesh) {
-            Job unheard;  // what is said of a mesh is about its colours
-            mesh = std::make_shared<MeshDistance>(
-                filled_mesh(f.source.mesh, read_mesh(f.source.mesh.file, unheard).mesh));
-        }
+        if (f.source.shape == ProceduralShape::Mesh) mesh = body_of(f.source.mesh);
         const auto make = [mesh](const ProceduralParams& p, const Vec3d& up, double t, Job& job) {
             return make_procedural(p, up, t, job, mesh.get());
         };
@@ -233,6 +260,11 @@ struct SourceOf {
     }
 
   private:
+    static std::shared_ptr<const MeshDistance> body_of(const MeshShapeParams& mesh) {
+        Job unheard;  // what is said of a mesh is about its colours
+        return std::make_shared<MeshDistance>(
+            filled_mesh(mesh, read_mesh(mesh.file, unheard).mesh));
+    }
     // From a function of the parameters, the direction up and the time.
     template <class Make, class P>
     std::unique_ptr<FluidSource> made_by(const Make& make, const P& source) const {
@@ -261,9 +293,16 @@ void report_unmet_solids(const Scene& scene, const FluidSection& fluid, Job& job
     if (!is_smoke && !std::holds_alternative<FluidOf<ParticleParams>>(fluid)) return;
     for (const SurfaceParams& s : scene.solids) {
         const auto* mesh = std::get_if<MeshSurface>(&s);
-        if (!mesh || mesh->material.kind == MaterialKind::None) continue;
-        job.warn("solid '" + mesh->name + "' is a mesh: seen, but the " +
-                 (is_smoke ? "smoke passes" : "particles pass") + " through it");
+        if (!mesh || !is_in_the_way(s, common_of(fluid).name)) continue;
+        if (!is_smoke) {
+            job.warn("solid '" + mesh->name +
+                     "' is a mesh: seen, but the particles pass through it");
+            continue;
+        }
+        Job unheard;
+        if (has_inside(read_mesh(mesh->file, unheard).mesh)) continue;
+        job.warn("solid '" + mesh->name +
+                 "' is a mesh that is not closed: seen, but the smoke passes through it");
     }
 }
 

@@ -15,7 +15,8 @@ namespace gischt {
 // What moves a fluid of a scene: the solver, the procedure or the reader behind one section.
 std::unique_ptr<FluidSource> make_source(const Scene& scene, const FluidSection& fluid);
 
-// Reports the solids that stand where a simulated fluid is and do not stop it: meshes.
+// Reports the solids that stand where a simulated fluid is and do not stop it: meshes, of smoke
+// those that are not closed.
 void report_unmet_solids(const Scene& scene, const FluidSection& fluid, Job& job);
 
 // Whether frames of this fluid are computed (and cached as VDB), not read from files of somebody

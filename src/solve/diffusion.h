@@ -33,8 +33,26 @@ struct VelocitySides {
     std::array<Vec3f, 6> velocity{};
 };
 
-// What a solid does to the velocity along it.
-enum class SolidSlip { NoSlip, FreeSlip };
+// Solids in a scalar. Null: none of that kind.
+struct ScalarSolids {
+    const FaceField* fraction =
+        nullptr;  // open fractions of the faces; what is closed is insulated
+    // Solids that hold a value: signed distance to them at the cells' centres, in any unit,
+    // negative inside, true where a surface passes between two neighbours; and the value at both of
+    // these.
+    const TileField<float>* distance = nullptr;
+    const TileField<float>* value = nullptr;  // null: zero
+};
+
+// Solids in a velocity. With `fraction` alone they let the fluid slip: faces with fraction 0 lie in
+// them, keep their value, and are not felt. With `distance`, signed distances at the faces as
+// above, the fluid sticks: what lies inside keeps its value, and `wall` is the solid's velocity on
+// both sides of its surface (null: at rest); `fraction` is not read then.
+struct VelocitySolids {
+    const FaceField* fraction = nullptr;
+    const FaceField* distance = nullptr;
+    const FaceField* wall = nullptr;
+};
 
 // One step of backward Euler (Stam 1999): replaces x by the solution of (1 - number lap) x' = x,
 // with the 5- or 7-point Laplacian of unit spacing; number = nu dt / h^2, any size >= 0, is
@@ -43,16 +61,22 @@ enum class SolidSlip { NoSlip, FreeSlip };
 // a negative number, and where only one of two opposite sides is periodic. Same bits on any number
 // of threads.
 //
-// A scalar at cell centres. `fraction`: open fractions of the faces, null where all are 1; what is
-// closed is insulated, and cells without an open face keep their value.
+// Surfaces that hold a value are resolved below a cell: a link to a neighbour inside, whose surface
+// lies at the share theta of the way, counts 1 / theta and holds the value (Gibou, Fedkiw, Cheng,
+// Kang 2002), which keeps the system symmetric and the solution of second order. theta is at least
+// 0.01, so that a value is held off its place by that share of a cell.
+//
+// A scalar at cell centres. Cells without an open face keep their value.
 SolveResult diffuse(TileField<float>& x, double number, const ScalarSides& sides,
-                    const FaceField* fraction, const SolveLimits& limits, Job& job);
+                    const ScalarSolids& solids, const SolveLimits& limits, Job& job);
+inline SolveResult diffuse(TileField<float>& x, double number, const ScalarSides& sides,
+                           const FaceField* fraction, const SolveLimits& limits, Job& job) {
+    return diffuse(x, number, sides, ScalarSolids{fraction, nullptr, nullptr}, limits, job);
+}
 
-// Every component of a staggered velocity, each on its own. Faces with fraction 0 lie in the solid
-// and keep their value (the solid's velocity); to NoSlip it is what the fluid beside them feels, to
-// FreeSlip fluid faces do not feel them. Solids are resolved to a cell, not below. The result holds
-// the largest iteration count and residual of the components.
+// Every component of a staggered velocity, each on its own. The result holds the largest iteration
+// count and residual of the components.
 SolveResult diffuse(FaceField& u, double number, const VelocitySides& sides,
-                    const FaceField* fraction, SolidSlip slip, const SolveLimits& limits, Job& job);
+                    const VelocitySolids& solids, const SolveLimits& limits, Job& job);
 
 }  // namespace gischt

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <string>
+#include <optional>
 
 #include "base/parallel.h"
 #include "solve/diffusion_step.h"
 #include "solve/stencil_build.h"
+#include "solve/surface_links.h"
 
 namespace gischt {
 namespace {
@@ -110,70 +111,36 @@ void store(const TileField<float>& x, const Unknowns& un, FaceField& u) {
     }
 }
 
-// The coefficients that faces inside solids leave: no flow between an unknown and a closed face;
-// where the solid does not let slip, the unknown is held by `extra` and `hold` = sum of the closed
-// values.
-struct SolidLinks {
-    FaceField weight;
-    TileField<float> extra, hold;
-
-    SolidLinks(const FaceField& u, const FaceField& fraction, const Unknowns& un,
-               const TileMap::Ptr& map, SolidSlip slip)
-        : weight(map, 1), extra(map), hold(map) {
-        const auto work = [&](int t) {
-            const Box3i faces = un.faces_of(*map, t, 1);
-            std::vector<float> open(volume(faces.size())), value(open.size());
-            gather_faces(fraction, un.axis, faces, un.borders, open.data());
-            if (std::ranges::all_of(open, [](float f) { return f > 0; })) return;
-            gather_faces(u, un.axis, faces, un.borders, value.data());
-            link(*map, t, faces, un, slip == SolidSlip::NoSlip, open, value);
-        };
-        parallel_for(map->size(), 16, work);
-    }
-
-  private:
-    void link(const TileMap& map, int t, const Box3i& faces, const Unknowns& un, bool holds,
-              const std::vector<float>& open, const std::vector<float>& value) {
-        const Vec3i size = faces.size();
-        const auto at = [&](const Vec3i& face) {
-            const Vec3i c = face - faces.lo;
-            return static_cast<std::size_t>(c.x + size.x * (c.y + size.y * c.z));
-        };
-        for_cells(map, t, [&](const Vec3i& cell, int v) {
-            const Vec3i face = cell + un.offset;
-            const bool closed = !(open[at(face)] > 0);
-            for (int a = 0; a < weight.axes(); ++a) {
-                for (int end = 0; end < 2; ++end) {
-                    Vec3i next = face;
-                    next[a] += end == 0 ? -1 : 1;
-                    const bool is_side = cell[a] == (end == 0 ? 0 : un.count[a] - 1);
-                    // Beyond a side that is not periodic the side's own rule holds.
-                    const bool beyond = is_side && un.borders(a, end) != Border::Periodic;
-                    const bool next_closed = !beyond && !(open[at(next)] > 0);
-                    if (!closed && next_closed && holds) {
-                        extra.tile(t)[v] += 1;
-                        hold.tile(t)[v] += value[at(next)];
-                    }
-                    if (!closed && !next_closed) continue;
-                    if (end == 0) weight[a].tile(t)[v] = 0;
-                    if (end == 1 && is_side) {
-                        weight.last[static_cast<std::size_t>(a)][weight.last_index(a, cell)] = 0;
-                    }
-                }
-            }
-        });
-    }
-};
+// Faces in solids, and what they hold.
+SurfaceLinks links_of(const VelocitySolids& solids, const Unknowns& un, const TileMap::Ptr& map) {
+    const bool sticks = solids.distance != nullptr;
+    const FaceField& distance = sticks ? *solids.distance : *solids.fraction;
+    SurfaceLinks links(map, un.borders, sticks);
+    parallel_for(map->size(), 16, [&](int t) {
+        const Box3i faces = un.faces_of(*map, t, 1);
+        TileSurroundings around{{faces.lo - un.offset, faces.hi - un.offset}, {}, {}};
+        around.distance.resize(volume(faces.size()));
+        gather_faces(distance, un.axis, faces, un.borders, around.distance.data());
+        if (around.is_open()) return;
+        if (solids.wall != nullptr) {
+            around.value.resize(around.distance.size());
+            gather_faces(*solids.wall, un.axis, faces, un.borders, around.value.data());
+        }
+        links.link(t, around);
+    });
+    return links;
+}
 
 // What the walls hold beyond the unknowns: along the own axis the face on the wall, else the wall's
 // velocity. Not for faces inside solids, which stay as they are.
-void add_walls(const FaceField& u, const VelocitySides& sides, const FaceField* fraction,
+void add_walls(const FaceField& u, const VelocitySides& sides, const VelocitySolids& solids,
                const Unknowns& un, DiffusionStep& step) {
+    const FaceField* open = solids.distance != nullptr ? solids.distance : solids.fraction;
     for (int a = 0; a < u.axes(); ++a) {
         for (int end = 0; end < 2; ++end) {
             step.add_side(a, end, [&](const Vec3i& cell) {
                 Vec3i face = cell + un.offset;
-                if (fraction != nullptr && !(fraction->get(un.axis, face) > 0)) return 0.0f;
+                if (open != nullptr && !(open->get(un.axis, face) > 0)) return 0.0f;
                 if (a != un.axis) {
                     return sides.velocity[static_cast<std::size_t>(2 * a + end)][un.axis];
                 }
@@ -185,16 +152,16 @@ void add_walls(const FaceField& u, const VelocitySides& sides, const FaceField* 
 }
 
 SolveResult diffuse_component(FaceField& u, double number, const VelocitySides& sides,
-                              const FaceField* fraction, SolidSlip slip, int axis,
-                              const SolveLimits& limits, Job& job) {
+                              const VelocitySolids& solids, int axis, const SolveLimits& limits,
+                              Job& job) {
     const Unknowns un(u, axis, sides);
     if (un.is_none()) return {0, 0, true};
     StencilSpec spec;
     spec.map = full_map(un.count, u.map().shape());
     spec.sides = un.sides;
-    std::unique_ptr<SolidLinks> links;
-    if (fraction != nullptr) {
-        links = std::make_unique<SolidLinks>(u, *fraction, un, spec.map, slip);
+    std::optional<SurfaceLinks> links;
+    if (solids.fraction != nullptr || solids.distance != nullptr) {
+        links.emplace(links_of(solids, un, spec.map));
         spec.fraction = &links->weight;
         spec.extra = &links->extra;
     }
@@ -203,13 +170,10 @@ SolveResult diffuse_component(FaceField& u, double number, const VelocitySides& 
 
     TileField<float> x = load(u, un, spec.map);
     step.set_right_hand_side(x);
-    if (links != nullptr) {
-        auto& b = step.right_hand_side().values();
-        const auto& hold = links->hold.values();
-        for (std::size_t i = 0; i < b.size(); ++i) b[i] += hold[i];
-    }
-    add_walls(u, sides, fraction, un, step);
-    const SolveResult result = step.solve(x, limits, job);
+    SolveLimits own = limits;
+    if (links) own.tolerance *= links->add_held(step.right_hand_side());
+    add_walls(u, sides, solids, un, step);
+    const SolveResult result = step.solve(x, own, job);
     store(x, un, u);
     return result;
 }
@@ -217,11 +181,10 @@ SolveResult diffuse_component(FaceField& u, double number, const VelocitySides& 
 }  // namespace
 
 SolveResult diffuse(FaceField& u, double number, const VelocitySides& sides,
-                    const FaceField* fraction, SolidSlip slip, const SolveLimits& limits,
-                    Job& job) {
+                    const VelocitySolids& solids, const SolveLimits& limits, Job& job) {
     SolveResult worst{0, 0, true};
     for (int a = 0; a < u.axes(); ++a) {
-        const SolveResult r = diffuse_component(u, number, sides, fraction, slip, a, limits, job);
+        const SolveResult r = diffuse_component(u, number, sides, solids, a, limits, job);
         worst.iterations = std::max(worst.iterations, r.iterations);
         worst.residual = std::max(worst.residual, r.residual);
         worst.converged = worst.converged && r.converged;
