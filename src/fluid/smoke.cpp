@@ -77,6 +77,7 @@ SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
       domain_(params.domain),
       blocks_(domain_.map),
       solids_(domain_, blocks_, world.solids),
+      ledger_(domain_, blocks_, solids_),
       emitters_(params.sources, params.ambient_temperature, 1 / world.fps),
       projection_(domain_, blocks_, solids_),
       speeds_(static_cast<std::size_t>(blocks_.size())),
@@ -108,21 +109,29 @@ StepStatistics SmokeSolver::step(double dt, Job& job) {
         throw Error(ErrorKind::Usage, "smoke", fmt::format("a step of {} s is impossible", dt));
     }
     const double time = state_.time + dt;
+    ledger_.begin_step(scalars(), state_.velocity, dt);
     {
         PhaseTimer timer(job, "advect");
         advect_all(dt);
     }
+    ledger_.note_advection(scalars(), {decay(params_.density_half_life, dt),
+                                       decay(params_.temperature_half_life, dt)});
     job.check();
     {
         PhaseTimer timer(job, "solids");
-        if (solids_.update(time)) projection_.update_solids();
+        if (solids_.update(time)) {
+            projection_.update_solids();
+            ledger_.note_solids(scalars());
+        }
     }
     {
         PhaseTimer timer(job, "sources");
         emitters_.apply(domain_, blocks_, time, dt, state_.density, state_.temperature,
                         state_.velocity);
     }
+    ledger_.note_sources(scalars());
     diffuse_scalars(dt, job);
+    ledger_.note_diffusion(scalars(), {params_.smoke_diffusivity, params_.thermal_diffusivity}, dt);
     {
         PhaseTimer timer(job, "forces");
         apply_forces(domain_, blocks_, forces_at(time), dt, state_.density, state_.temperature,
@@ -290,6 +299,7 @@ void SmokeSolver::fill(const Initial& initial, Job& job) {
     });
     trim(blocks_, state_.density, density_floor);
     trim(blocks_, state_.temperature, temperature_floor);
+    restart_ledger();
     if (!initial.velocity) return;
     if (initial.project) {
         projection_.project(state_.velocity, state_.potential, 1, params_.pressure_tolerance,
@@ -307,6 +317,8 @@ void SmokeSolver::set_state(SmokeState state) {
     trim(blocks_, state_.temperature, 0);
     speeds_ = measure_speeds(domain_, blocks_, state_.velocity);
     if (solids_.update(state_.time)) projection_.update_solids();
+    ledger_.note_solids(scalars());
+    restart_ledger();
 }
 
 }  // namespace gischt

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "math/keyframes.h"
 #include "schema/table.h"
 #include "shape/shape.h"
@@ -17,6 +19,7 @@ struct SolidParams {
     Keyed<Vec3d> size = Vec3d(1);  // box: edges
     Vec3d normal{0, 0, 1};         // plane: the fluid is on this side
     Keyed<Vec3d> rotation;         // axis times angle in degrees
+    std::string name = {};         // for probes
 
     Shape shape_at(double time) const;
     // Turns the solid's own axes into the world's.

@@ -112,7 +112,9 @@ std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& f
     const Material& m = std::visit([](const auto& p) -> const Material& { return p.material; }, s);
     const bool is_filled = !m.interior.empty() && m.interior == fluid;
     if (m.kind == MaterialKind::None || is_filled) return std::nullopt;
-    return std::visit(SolidOf{up}, s);
+    std::optional<SolidParams> solid = std::visit(SolidOf{up}, s);
+    if (solid) solid->name = std::visit([](const auto& p) { return p.name; }, s);
+    return solid;
 }
 
 // The vectors of a field under a linear map.
