@@ -14,14 +14,15 @@ struct SolidForce {
     Vec3d total() const { return pressure + viscous; }
 };
 
-// The force on a solid of the solver's world. Each cell holds the part of the surface whose vector
-// area closes the open parts of its faces, so that the pressure sums to what the fluid's own
-// momentum balance loses; a linear pressure gives Archimedes' force on the volume that the
-// fractions enclose. The viscous traction mu (grad u + grad u^T) n takes its gradient from a
-// quadratic fitted to the velocities within 2.5 cells in the fluid, which has the solid's
-// velocity on the surface: second order, for solids to which the fluid sticks. A surface that lies
-// on a side of the domain does not count; the pressure is relative to the ambient, which matters
-// for solids that the domain cuts. Throws Error{Usage} where `solid` is none of the world's.
+// The force on a solid of the solver's world. In 3-D each cell holds the part of the surface whose
+// vector area closes the open parts of its faces, and its own pressure acts on that: a linear
+// pressure gives Archimedes' force on the volume that the fractions enclose. In 2-D a chord crosses
+// each cell, and the pressure on its middle is fitted to that of the cells around. The viscous
+// traction mu (grad u + grad u^T) n takes its gradient from a quadratic fitted to the velocities
+// within 2.5 cells in the fluid, which has the solid's velocity on the surface. Both are of second
+// order; the traction is that of a fluid that sticks to the solid. A surface on a side of the
+// domain does not count; the pressure is relative to the ambient, which matters for solids that the
+// domain cuts. Throws Error{Usage} where `solid` is none of the world's.
 SolidForce measure_solid_force(const SmokeSolver& solver, std::size_t solid, bool viscous);
 
 }  // namespace gischt
