@@ -146,7 +146,7 @@ struct RowsOf {
             const double t = static_cast<double>(i) / (p.count - 1);
             ProbeRow& row = rows[static_cast<std::size_t>(i)];
             row = {time, t * length(p.to - p.from)};
-            add_state(row, p.from + t * (p.to - p.from));
+            add_state(row, (1 - t) * p.from + t * p.to);  // exact at both ends
         });
         return rows;
     }

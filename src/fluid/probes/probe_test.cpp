@@ -42,6 +42,8 @@ TEST(Sample, OfLinearFieldsIsExactAlsoBesideWallsAndSolids) {
             EXPECT_NEAR(s.velocity.x, linear(p), 1e-4);
             EXPECT_NEAR(s.velocity.y, 2 * linear(p), 1e-4);
         }
+        const SmokeSample inside = sample_smoke(solver, {0.5, 0.5, side});
+        EXPECT_TRUE(std::isnan(inside.velocity.x) && std::isnan(inside.pressure));
     }
 }
 

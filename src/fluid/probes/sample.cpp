@@ -2,6 +2,7 @@
 #include "fluid/probes/sample.h"
 
 #include <cmath>
+#include <limits>
 
 namespace gischt {
 
@@ -122,6 +123,11 @@ void StateLattice::collect(const Vec3d& point, double reach, LocalFit& fit) cons
 
 SmokeSample sample_smoke(const SmokeSolver& solver, const Vec3d& point) {
     SmokeSample s;
+    // A point on a surface may lie a rounding inside.
+    if (solver.solids().signed_distance(point) < -1e-6 * solver.domain().h) {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        return {Vec3d(none), none, none, none};
+    }
     for (int a = 0; a < solver.domain().axes(); ++a) {
         s.velocity[a] = StateLattice::velocity(solver, a).at(point);
     }

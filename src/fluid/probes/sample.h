@@ -48,7 +48,7 @@ struct SmokeSample {
     double temperature = 0;  // K
     double density = 0;      // 1
 };
-// The state at a point of the domain.
+// The state at a point of the domain; NaN in solids.
 SmokeSample sample_smoke(const SmokeSolver& solver, const Vec3d& point);
 
 }  // namespace gischt
