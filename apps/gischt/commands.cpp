@@ -54,6 +54,12 @@ void add_scene_flags(CLI::App& app, SceneOptions& o, bool pictures) {
     app.add_option("--exposure", o.exposure, "Brightness of PNG and MP4 in stops")->type_name("EV");
 }
 
+void add_probe_flag(CLI::App& app, SceneOptions& o) {
+    app.add_option("--probes", o.probes,
+                   "Folder of the tables of probes (default: probes in the folder of the frames)")
+        ->type_name("DIR");
+}
+
 // gischt run SCENE [-o DIR]
 void add_run(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<SceneOptions>();
@@ -63,6 +69,7 @@ void add_run(CLI::App& app, CommandContext& context) {
                     "Folder of frames, pictures and movie (default: out/NAME)")
         ->expected(1)
         ->type_name("DIR");
+    add_probe_flag(*sub, *options);
     add_scene_flags(*sub, *options, true);
     add_work_flags(*sub, context);
     sub->callback([options, &context] {
@@ -79,6 +86,7 @@ void add_sim(CLI::App& app, CommandContext& context) {
     sub->add_option("-o,--output", options->outputs, "Folder of the frames (default: out/NAME)")
         ->expected(1)
         ->type_name("CACHE");
+    add_probe_flag(*sub, *options);
     add_scene_flags(*sub, *options, false);
     add_work_flags(*sub, context);
     sub->callback([options, &context] {
@@ -104,6 +112,7 @@ void add_render(CLI::App& app, CommandContext& context) {
         ->check(CLI::Range(1, 100000));
     sub->add_option("--cache", options->cache, "Folder that keeps simulated frames")
         ->type_name("DIR");
+    add_probe_flag(*sub, *options);
     add_scene_flags(*sub, *options, true);
     add_work_flags(*sub, context);
     sub->callback([options, &context] {

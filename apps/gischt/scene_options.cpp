@@ -80,6 +80,7 @@ Order order_of(const SceneOptions& o, const CommandContext& context) {
     order.restart = o.restart;
     order.command = context.command_line;
     if (!o.cache.empty()) order.cache = o.cache;
+    if (!o.probes.empty()) order.probes = work_folder(o, o.probes);
     return order;
 }
 
@@ -145,6 +146,7 @@ void finish_statistics(const RunStatistics& run, const CommandContext& context, 
         for (const auto& [phase, seconds] : context.job.times()) {
             fmt::print(stderr, "{:<12} {:8.2f} s\n", phase, seconds);
         }
+        fmt::print(stderr, "{}", ledger_text(run));
     }
     if (!context.stats_file.empty()) {
         write_statistics(context.stats_file, run, context.job, now_seconds() - start);

@@ -16,7 +16,7 @@ namespace gischt {
 struct SceneOptions {
     std::string target;  // scene file, built-in scene, .vdb file or pattern, cache folder
     std::vector<std::string> outputs;
-    std::string method, preset, frames, size, samples, time, cache;
+    std::string method, preset, frames, size, samples, time, cache, probes;
     std::optional<int> spp, turntable;
     std::optional<double> exposure, noise;
     std::optional<std::int64_t> seed;

@@ -74,6 +74,7 @@ SmokeSolver::SmokeSolver(const SmokeParams& params, const FluidWorld& world)
       domain_(params.domain),
       blocks_(domain_.map),
       solids_(domain_, blocks_, world.solids, params.solid_slip, params.ambient_temperature),
+      ledger_(domain_, blocks_, solids_),
       emitters_(params.sources, params.ambient_temperature, 1 / world.fps, domain_.h),
       projection_(domain_, blocks_, solids_),
       speeds_(static_cast<std::size_t>(blocks_.size())),
@@ -120,6 +121,7 @@ StepStatistics SmokeSolver::step(double dt, Job& job) {
     }
     const double time = state_.time + dt;
     hold_sides(time);
+    ledger_.begin_step(scalars(), state_.velocity, dt);
     const ProjectionResult projected = is_high() ? step_high(dt, job) : step_standard(dt, job);
     state_.time = time;
     state_.steps += 1;
@@ -159,11 +161,15 @@ ProjectionResult SmokeSolver::step_standard(double dt, Job& job) {
 void SmokeSolver::meet_solids_and_sources(double time, double dt, Job& job) {
     {
         const PhaseTimer timer(job, "solids");
-        if (solids_.update(time)) projection_.update_solids();
+        if (solids_.update(time)) {
+            projection_.update_solids();
+            ledger_.note_solids(scalars());
+        }
     }
     const PhaseTimer timer(job, "sources");
     emitters_.apply(domain_, blocks_, time, dt, state_.density, state_.temperature,
                     state_.velocity);
+    ledger_.note_sources(scalars());
 }
 
 void SmokeSolver::push(double time, double dt, Job& job) {
@@ -201,6 +207,8 @@ void SmokeSolver::carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds,
         }
     }
     advect(domain_, blocks_, speeds, dt, options, velocity, scalars);
+    ledger_.note_advection(this->scalars(), {decay(params_.density_half_life, dt),
+                                             decay(params_.temperature_half_life, dt)});
 }
 
 void SmokeSolver::diffuse_scalars(double dt, SmokeHistory* history, Job& job) {
@@ -223,6 +231,7 @@ void SmokeSolver::diffuse_scalars(double dt, SmokeHistory* history, Job& job) {
            density_floor, &SmokeHistory::density_kick);
     spread(state_.temperature, domain_.held.temperature, solids_.heat_solids(),
            params_.thermal_diffusivity, temperature_floor, &SmokeHistory::temperature_kick);
+    note_diffusion(dt);
 }
 
 void SmokeSolver::diffuse_velocity(double dt, Job& job) {
@@ -341,6 +350,7 @@ void SmokeSolver::fill(const Initial& initial, Job& job) {
     drop_small(blocks_, state_.density, density_floor);
     drop_small(blocks_, state_.temperature, temperature_floor);
     state_.history = {};
+    restart_ledger();
     if (!initial.velocity) return;
     if (initial.project) {
         projection_.project(state_.velocity, state_.potential, 1, params_.pressure_tolerance,
@@ -359,6 +369,8 @@ void SmokeSolver::set_state(SmokeState state) {
     speeds_ = measure_speeds(domain_, blocks_, state_.velocity);
     hold_sides(state_.time);
     if (solids_.update(state_.time)) projection_.update_solids();
+    ledger_.note_solids(scalars());
+    restart_ledger();
 }
 
 }  // namespace gischt

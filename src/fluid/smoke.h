@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "fluid/forces.h"
+#include "fluid/ledger.h"
 #include "fluid/project.h"
 #include "fluid/smoke_params.h"
 #include "fluid/source.h"
@@ -77,6 +78,9 @@ class SmokeSolver {
     const SmokeState& state() const { return state_; }
     // Continues from another state of the same domain.
     void set_state(SmokeState state);
+    // Where smoke and heat came from and went since restart_ledger(), fill() or set_state().
+    const Ledger& ledger() const { return ledger_; }
+    void restart_ledger() { ledger_.restart(scalars()); }
     double pressure_bytes_per_cell() const { return projection_.bytes_per_cell_iteration(); }
 
   private:
@@ -99,12 +103,18 @@ class SmokeSolver {
     ProjectionResult project(double dt, Job& job);
     double thermal_expansion() const;
     Vec3d initial_velocity(const Vec3d& point) const;
+    void note_diffusion(double dt) {
+        ledger_.note_diffusion(scalars(), {params_.smoke_diffusivity, params_.thermal_diffusivity},
+                               dt);
+    }
+    Ledger::Scalars scalars() const { return {&state_.density, &state_.temperature}; }
 
     SmokeParams params_;
     FluidWorld world_;
     Domain domain_;
     BlockMap blocks_;
     SolidField solids_;
+    Ledger ledger_;
     Emitters emitters_;
     PressureProjection projection_;
     SmokeState state_;

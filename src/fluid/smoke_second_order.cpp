@@ -62,6 +62,8 @@ ProjectionResult SmokeSolver::step_high(double dt, Job& job) {
         start.potential = std::move(state_.potential);
         start.potential_dt = dt;
         state_ = std::move(start);
+        restart_ledger();
+        ledger_.begin_step(scalars(), state_.velocity, dt);
         if (solids_.update(state_.time)) projection_.update_solids();
     }
     return advance_high(dt, job);
@@ -130,6 +132,7 @@ void SmokeSolver::advect_high(double dt, Job& job) {
         };
         kick(state_.density, history.density_kick);
         kick(state_.temperature, history.temperature_kick);
+        note_diffusion(0.5 * dt);
     }
     const FaceField& through = history.previous;
     AdvectedVelocity velocity{&carried, nullptr, &velocity_next_, AdvectionScheme::SemiLagrangian,

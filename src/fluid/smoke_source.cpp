@@ -10,6 +10,23 @@
 
 namespace gischt {
 
+// J, as the projection sums it up.
+static double kinetic_energy_of(const SmokeSolver& solver) {
+    const Domain& d = solver.domain();
+    const bool has_solids = !solver.solids().is_empty();
+    const double squares = parallel_sum(solver.blocks().size(), 1, [&](int block) {
+        double sum = 0;
+        for (int a = 0; a < d.axes(); ++a) {
+            for_cells(d.faces_of(solver.blocks().cells(block), a), [&](const Vec3i& f) {
+                const double u = solver.state().velocity.get(a, f);
+                sum += (has_solids ? solver.solids().fraction().get(a, f) : 1.0) * u * u;
+            });
+        }
+        return sum;
+    });
+    return 0.5 * solver.params().reference_density * d.cell_volume() * squares;
+}
+
 SmokeSource::SmokeSource(const SmokeParams& params, const FluidWorld& world)
     : solver_(params, world) {}
 
@@ -29,6 +46,12 @@ Frame SmokeSource::frame(int number, Job& job) {
     return make_frame(solver_, number);
 }
 
+bool SmokeSource::set_probes(const std::vector<ProbeParams>& probes) {
+    probes_ = Probes(probes, solver_);
+    if (frame_ == 0) probes_.note(solver_, true);
+    return true;
+}
+
 void SmokeSource::check_whole() const {
     if (!is_broken_) return;
     throw Error(ErrorKind::Usage, "smoke", "the simulation was stopped in the middle of a step",
@@ -42,6 +65,8 @@ void SmokeSource::advance_frame(Job& job) {
     const double end = (frame_ + 1) / solver_.world().fps;
     FrameStatistics s;
     bool warned = false;
+    solver_.restart_ledger();
+    const double energy_before = kinetic_energy_ ? *kinetic_energy_ : kinetic_energy_of(solver_);
     while (s.steps < p.max_substeps) {
         const double rest = end - solver_.state().time;
         const double wanted = rest / solver_.longest_step();
@@ -64,9 +89,16 @@ void SmokeSource::advance_frame(Job& job) {
         s.max_divergence_dt = std::max(s.max_divergence_dt, step.max_divergence_dt);
         s.kinetic_energy = step.kinetic_energy;
         s.max_speed = step.max_speed;
-        if (steps == 1) break;
+        const bool ends_frame = steps == 1;
+        probes_.note(solver_, ends_frame);
+        if (ends_frame) break;
     }
     frame_ += 1;
+    s.kinetic_energy_change = s.kinetic_energy - energy_before;
+    kinetic_energy_ = s.kinetic_energy;
+    s.density_ledger = solver_.ledger().density();
+    s.heat_ledger = solver_.ledger().heat();
+    s.mass_per_volume = p.reference_density;
     s.frame = frame_;
     s.time = solver_.state().time;
     s.mass = p.reference_density * solver_.density_integral();
@@ -87,6 +119,7 @@ void SmokeSource::load_state(const std::filesystem::path& path) {
     solver_.set_state(std::move(state));
     frame_ = frame;
     is_broken_ = false;
+    kinetic_energy_.reset();
     statistics_ = {};
     statistics_.frame = frame;
     statistics_.time = solver_.state().time;

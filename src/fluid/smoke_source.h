@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "fluid/smoke.h"
+#include "fluid/probes/probe.h"
 
 namespace gischt {
 
@@ -17,6 +17,8 @@ class SmokeSource final : public FluidSource {
         solver_.set_hand(hand);
         return true;
     }
+    bool set_probes(const std::vector<ProbeParams>& probes) override;
+    std::vector<std::vector<ProbeRow>> take_probe_rows() override { return probes_.take(); }
     void save_state(const std::filesystem::path& path) const override;
     void load_state(const std::filesystem::path& path) override;
     int last_frame() const override { return frame_; }
@@ -34,6 +36,8 @@ class SmokeSource final : public FluidSource {
     int frame_ = 0;
     bool is_broken_ = false;  // stopped in the middle of a step
     FrameStatistics statistics_;
+    std::optional<double> kinetic_energy_;  // J, of the frame before; none where it is not known
+    Probes probes_;
 };
 
 }  // namespace gischt

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "math/keyframes.h"
 #include "schema/table.h"
@@ -24,6 +25,7 @@ struct SolidParams {
     Keyed<Vec3d> size = Vec3d(1);  // box: edges
     Vec3d normal{0, 0, 1};         // plane: the fluid is on this side
     Keyed<Vec3d> rotation;         // axis times angle in degrees
+    std::string name = {};         // for probes
     // The body of a mesh, about its own origin, which lies at `position`; moved by nothing else.
     std::shared_ptr<const MeshDistance> mesh;
     Keyed<double> scale = 1.0;                 // of a mesh, about its origin, at first

@@ -6,6 +6,8 @@
 
 #include "base/job.h"
 #include "fluid/emitter.h"
+#include "fluid/ledger.h"
+#include "fluid/probes/probe_params.h"
 #include "fluid/solid.h"
 #include "grid/frame.h"
 
@@ -23,12 +25,16 @@ struct FrameStatistics {
     int frame = 0;
     double time = 0;  // s
     int steps = 0;
-    int pressure_iterations = 0;   // of all steps
-    double pressure_residual = 0;  // largest of the steps: max|r| / max|b|
-    double max_divergence_dt = 0;  // largest of the steps: |div u| dt
-    double mass = 0;               // kg: reference density times the integral of density
-    double kinetic_energy = 0;     // J
-    double max_speed = 0;          // m/s, largest component
+    int pressure_iterations = 0;       // of all steps
+    double pressure_residual = 0;      // largest of the steps: max|r| / max|b|
+    double max_divergence_dt = 0;      // largest of the steps: |div u| dt
+    double mass = 0;                   // kg: reference density times the integral of density
+    double kinetic_energy = 0;         // J
+    double kinetic_energy_change = 0;  // J, since the frame before
+    double max_speed = 0;              // m/s, largest component
+    ScalarLedger density_ledger;       // m^3, of this frame
+    ScalarLedger heat_ledger;          // K m^3
+    double mass_per_volume = 0;        // kg/m^3: makes the density's ledger one of mass
     std::int64_t cells = 0;
     int active_tiles = 0;  // with density or temperature
     double wall_seconds = 0;
@@ -52,6 +58,12 @@ class FluidSource {
     // Sources beside those of the scene, from the next step on, in place of those of the last call:
     // what a hand does to the fluid. False where nothing can be done to it.
     virtual bool set_hand(const std::vector<EmitterParams>&) { return false; }
+
+    // Measures these from now on, the present state among it where no frame was computed yet. False
+    // where nothing can be measured. Throws Error{Usage} for places that the fluid does not reach.
+    virtual bool set_probes(const std::vector<ProbeParams>&) { return false; }
+    // What was measured since the last call: per probe its rows (see fluid/probes/probe.h).
+    virtual std::vector<std::vector<std::vector<double>>> take_probe_rows() { return {}; }
 
     // Everything that a later frame depends on, in one file that appears at once; the resumed run
     // gives the same bits as the uninterrupted one. Nothing for stateless sources. load_state()

@@ -102,7 +102,7 @@ static std::string motion_text(const Value& whole) {
         Value copy = *part;
         if (copy.is_array()) {
             for (Value& element : copy.array()) {
-                drop_looks(element, std::string_view(key) == "solid");
+                if (element.is_table()) drop_looks(element, std::string_view(key) == "solid");
             }
         }
         text += std::string(key) + to_inline_toml(copy);
@@ -115,7 +115,7 @@ static std::string picture_text(Value whole) {
     auto drop = [](Value& table, const char* key) {
         std::erase_if(table.members(), [&](const Value::Member& m) { return m.key == key; });
     };
-    for (const char* key : {"description", "frames"}) drop(whole, key);
+    for (const char* key : {"description", "frames", "probe"}) drop(whole, key);
     if (Value* film = whole.find("film")) {
         for (const char* key : {"exposure", "tone"}) drop(*film, key);
     }

@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 
 #include "base/units.h"
+#include "fluid/probes/probe.h"
 #include "render/aov.h"
 #include "schema/doc.h"
 
@@ -121,8 +122,57 @@ void check_flows(const Scene& s, const Fail& fail) {
     }
 }
 
+// The fluid that a probe measures: the one that it names, or the only one.
+std::optional<std::size_t> fluid_of(const Scene& s, const ProbeCommon& probe) {
+    if (probe.fluid.empty() && s.fluids.size() == 1) return 0;
+    for (std::size_t i = 0; i < s.fluids.size(); ++i) {
+        if (!probe.fluid.empty() && common_of(s.fluids[i]).name == probe.fluid) return i;
+    }
+    return std::nullopt;
+}
+
+void check_solid_of(const Scene& s, const ForceProbe& probe, const Fail& fail) {
+    std::vector<std::string> names;
+    for (const SurfaceParams& solid : s.solids) {
+        names.push_back(std::visit([](const auto& p) { return p.name; }, solid));
+    }
+    if (std::ranges::find(names, probe.solid) != names.end()) return;
+    fail("probe", "'" + probe.name + "': there is no solid '" + probe.solid + "'",
+         names.empty() ? "" : hint_for(probe.solid, names));
+}
+
+// Probes belong to simulated smoke, and lie in it.
+void check_probes(const Scene& s, const Fail& fail) {
+    std::vector<std::string> names;
+    for (const FluidSection& fluid : s.fluids) names.push_back(common_of(fluid).name);
+    for (const ProbeParams& probe : s.probes) {
+        const ProbeCommon& common = probe_common(probe);
+        const auto fluid = fluid_of(s, common);
+        if (!fluid && common.fluid.empty()) {
+            fail("probe", "'" + common.name + "' must name its fluid, as there is not just one");
+        } else if (!fluid) {
+            fail("probe", "'" + common.name + "': there is no fluid '" + common.fluid + "'",
+                 hint_for(common.fluid, names));
+        }
+        const auto* smoke = std::get_if<FluidOf<SmokeParams>>(&s.fluids[*fluid]);
+        if (!smoke) {
+            fail("probe", "'" + common.name + "': its fluid is not simulated smoke",
+                 "only a simulation can be probed: take the probe out");
+        }
+        check_probe(probe, smoke->source.domain, s.gravity_vector());
+        for (const ProbeParams& other : s.probes) {
+            if (common.mean && probe_common(other).name == common.name + "_mean") {
+                fail("probe", "'" + common.name + "_mean' has the name of the mean of '" +
+                                  common.name + "'");
+            }
+        }
+        if (const auto* force = std::get_if<ForceProbe>(&probe)) check_solid_of(s, *force, fail);
+    }
+}
+
 void check_scene(const Scene& s, const Fail& fail) {
     check_flows(s, fail);
+    check_probes(s, fail);
     if (s.frames.x > s.frames.y) fail("frames", "must be [first, last] with first at most last");
     if (s.frames.x < 0) fail("frames", "must not start below 0");
     const auto methods = render_methods();
@@ -160,6 +210,14 @@ const FluidCommon& common_of(const FluidSection& fluid) {
     return std::visit([](const auto& f) -> const FluidCommon& { return f.common; }, fluid);
 }
 
+std::vector<ProbeParams> probes_of(const Scene& scene, std::size_t fluid) {
+    std::vector<ProbeParams> probes;
+    for (const ProbeParams& probe : scene.probes) {
+        if (fluid_of(scene, probe_common(probe)) == fluid) probes.push_back(probe);
+    }
+    return probes;
+}
+
 const Table<Scene>& scene_table() {
     using P = Scene;
     static const Table<P> table =
@@ -179,6 +237,8 @@ const Table<Scene>& scene_table() {
             .list("solid", &P::solids, surface_variants(),
                   {.help = "Solids: seen by the camera, casting shadows, and in the way of "
                            "simulated fluids"})
+            .list("probe", &P::probes, probe_variants(),
+                  {.help = "Measures simulated smoke: tables of numbers over time"})
             .list("light", &P::lights, light_variants(), {.help = "The lights"})
             .sub("camera", &P::camera, camera_table(),
                  {.help = "The camera; without it the fluids are framed"})

@@ -9,6 +9,7 @@
 
 #include "fluid/cloud.h"
 #include "fluid/particles/particle_params.h"
+#include "fluid/probes/probe_params.h"
 #include "fluid/procedural/params.h"
 #include "fluid/smoke.h"
 #include "image/filter.h"
@@ -80,7 +81,8 @@ struct Scene {
     std::vector<FluidSection> fluids;
     std::vector<PlacedMediumParams> media;  // that do not come from a fluid: fog, air
     std::vector<SurfaceParams>
-        solids;  // seen by the camera, and in the way of every simulated fluid
+        solids;                       // seen by the camera, and in the way of every simulated fluid
+    std::vector<ProbeParams> probes;  // of simulated smoke
     std::vector<AnyLightParams> lights;
     std::optional<CameraParams> camera;  // unset: frames the fluids from a little above
     FilmParams film;
@@ -93,6 +95,9 @@ struct Scene {
 };
 
 const Table<Scene>& scene_table();
+
+// The probes of a fluid of the scene, by its place among the fluids.
+std::vector<ProbeParams> probes_of(const Scene& scene, std::size_t fluid);
 
 // The components that `gischt doc NAME` knows at the top: scene, and each alternative below it.
 std::vector<const Component*> documented_components();

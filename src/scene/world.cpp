@@ -138,7 +138,10 @@ bool is_in_the_way(const SurfaceParams& s, const std::string& fluid) {
 // What stands in the way of a simulated fluid. Sheets have no inside that could.
 std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& fluid,
                                     const Vec3d& up) {
-    return is_in_the_way(s, fluid) ? std::visit(SolidOf{up}, s) : std::nullopt;
+    if (!is_in_the_way(s, fluid)) return std::nullopt;
+    std::optional<SolidParams> solid = std::visit(SolidOf{up}, s);
+    if (solid) solid->name = std::visit([](const auto& p) { return p.name; }, s);
+    return solid;
 }
 
 // The vectors of a field under a linear map.

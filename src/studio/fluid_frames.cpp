@@ -21,6 +21,24 @@ FluidFrames::FluidFrames(const LoadedScene& scene, std::size_t fluid, const Cach
       cache_(is_computed(scene.scene.fluids[fluid]) ? cache : nullptr),
       name_(fluid_names(scene.scene)[fluid]) {}
 
+void FluidFrames::probe(const fs::path& folder, bool restart) {
+    if (probes_of(scene_.scene, fluid_).empty()) return;
+    tables_.emplace(scene_, fluid_, folder, restart);
+}
+
+// Once: what frames of the cache were not measured when they were computed is not known.
+void FluidFrames::report_unmeasured(int number, Job& job) {
+    if (!tables_ || reported_unmeasured_) return;
+    const std::string names =
+        tables_->missing_at(scene_.scene.time_of(number), 1 / scene_.scene.fps);
+    if (names.empty()) return;
+    reported_unmeasured_ = true;
+    job.warn(
+        fmt::format("frame {} lies in the cache and was not measured by the probes {}: frames "
+                    "are measured when they are computed, --restart does",
+                    number, names));
+}
+
 bool FluidFrames::is_cached(int number) const {
     std::error_code ignored;
     return cache_ && fs::is_regular_file(cache_->vdb(fluid_, number), ignored);
@@ -32,11 +50,12 @@ void FluidFrames::start(int number, Job& job) {
     source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
     report_unmet_solids(scene_.scene, scene_.scene.fluids[fluid_], job);
     std::error_code ignored;
-    if (!cache_ || !fs::is_regular_file(cache_->state(fluid_), ignored)) return;
-    source_->load_state(cache_->state(fluid_));
-    saved_ = source_->last_frame();
-    if (saved_ < number) return;
-    source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+    if (cache_ && fs::is_regular_file(cache_->state(fluid_), ignored)) {
+        source_->load_state(cache_->state(fluid_));
+        saved_ = source_->last_frame();
+        if (saved_ >= number) source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+    }
+    if (tables_) source_->set_probes(tables_->probes());
 }
 
 // Whether the source can give that frame without starting anew.
@@ -47,6 +66,7 @@ bool FluidFrames::can_give(int number) const {
 Frame FluidFrames::compute(int number, RunStatistics& run, Job& job) {
     const PhaseTimer timer(job, "simulate");
     Frame frame = source_->frame(number, job);
+    if (tables_) tables_->add(source_->take_probe_rows());
     frame.metadata["creator"] = std::string("gischt ") + version;
     frame.metadata["scene_hash"] = scene_.hash;
     frame.metadata.emplace("up", scene_.scene.up == UpAxis::Y ? "y" : "z");
@@ -73,7 +93,11 @@ void FluidFrames::compute_and_write(int number, RunStatistics& run, Job& job) {
 }
 
 void FluidFrames::ensure(int number, RunStatistics& run, Job& job) {
-    if (is_cached(number) || !cache_) return;
+    if (!cache_) return;
+    if (is_cached(number)) {
+        report_unmeasured(number, job);
+        return;
+    }
     if (!can_give(number)) start(number, job);
     const int first = source_->is_sequential() ? source_->last_frame() + 1 : number;
     for (int n = first; n <= number; ++n) {

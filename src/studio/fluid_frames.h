@@ -7,6 +7,7 @@
 
 #include "scene/world.h"
 #include "studio/cache.h"
+#include "studio/probe_tables.h"
 #include "studio/statistics.h"
 
 namespace gischt {
@@ -19,6 +20,9 @@ class FluidFrames {
     // `cache` may be null; then computed frames live in memory only. Scene and cache must outlive
     // it.
     FluidFrames(const LoadedScene& scene, std::size_t fluid, const Cache* cache);
+    // Writes the tables of the scene's probes to a folder from now on; `restart` drops those that
+    // are there.
+    void probe(const std::filesystem::path& folder, bool restart);
 
     // Figures of newly computed frames are added to `run`.
     std::shared_ptr<const Frame> get(int number, RunStatistics& run, Job& job);
@@ -42,12 +46,15 @@ class FluidFrames {
     Frame compute(int number, RunStatistics& run, Job& job);
     void compute_and_write(int number, RunStatistics& run, Job& job);
     void save_state(bool now);
+    void report_unmeasured(int number, Job& job);
 
     const LoadedScene& scene_;
     std::size_t fluid_;
     const Cache* cache_;
     std::string name_;
     std::unique_ptr<FluidSource> source_;
+    std::optional<ProbeTables> tables_;
+    bool reported_unmeasured_ = false;
     int saved_ = 0;        // the frame of the state on the disk
     double saved_at_ = 0;  // when it was written, seconds
 };

@@ -17,10 +17,17 @@ namespace gischt {
 namespace fs = std::filesystem;
 namespace {
 
-std::vector<FluidFrames> open_fluids(const LoadedScene& scene, const Cache* cache) {
+std::vector<FluidFrames> open_fluids(const LoadedScene& scene, const Cache* cache,
+                                     const Order& order) {
     std::vector<FluidFrames> fluids;
-    for (std::size_t i = 0; i < scene.scene.fluids.size(); ++i)
+    for (std::size_t i = 0; i < scene.scene.fluids.size(); ++i) {
         fluids.emplace_back(scene, i, cache);
+        if (order.probes) {
+            fluids.back().probe(*order.probes, order.restart);
+        } else if (order.cache) {
+            fluids.back().probe(*order.cache / "probes", order.restart);
+        }
+    }
     return fluids;
 }
 
@@ -195,7 +202,7 @@ RenderResult render_with(const LoadedScene& scene, const View& view, RenderSetti
 
 void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, Job& job) {
     const std::optional<Cache> cache = open_cache(scene, order);
-    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr);
+    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr, order);
     for (int i = 0; i < order.frames.count(); ++i) {
         const int frame = order.frames[i];
         const JobPart part(job, static_cast<double>(i) / order.frames.count(),
@@ -208,7 +215,7 @@ void simulate(const LoadedScene& scene, const Order& order, RunStatistics& run, 
 View frame_view(const LoadedScene& scene, const Order& order, int frame, RunStatistics& run,
                 Job& job) {
     const std::optional<Cache> cache = open_cache(scene, order);
-    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr);
+    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr, order);
     std::vector<std::shared_ptr<const Frame>> frames;
     for (FluidFrames& fluid : fluids) frames.push_back(fluid.get(frame, run, job));
     for (FluidFrames& fluid : fluids) fluid.finish();
@@ -228,7 +235,7 @@ DisplayOptions display_of(const Scene& scene, const Image& image) {
 std::vector<std::string> render(const LoadedScene& scene, const Order& order, RunStatistics& run,
                                 Job& job) {
     const std::optional<Cache> cache = open_cache(scene, order);
-    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr);
+    std::vector<FluidFrames> fluids = open_fluids(scene, cache ? &*cache : nullptr, order);
     const int count = order.turntable > 0 ? order.turntable : order.frames.count();
     Outputs outputs(scene, order, count > 1);
     std::vector<std::string> written;

@@ -19,6 +19,8 @@ struct Order {
     // Patterns of pictures (.png, .exr, .hdr), states to go on with (.film) and movies (.mp4).
     std::vector<std::string> outputs;
     std::optional<std::filesystem::path> cache;
+    // Where tables of probes go; unset: `probes` in the cache, and nowhere without one.
+    std::optional<std::filesystem::path> probes;
     bool keeps_scene = false;  // the scene of that cache stays as it is
     bool restart = false;
     double noise = 0, time_limit = 0;  // as in RenderSettings; the time counts per picture

@@ -31,6 +31,13 @@ struct RunStatistics {
     std::vector<ImageFigures> images;
 };
 
+// The ledger of two spans of time, the second following the first.
+ScalarLedger added_up(const ScalarLedger& a, const ScalarLedger& b);
+
+// For people: the ledgers of each simulated fluid over the frames of the run; empty where nothing
+// was simulated.
+std::string ledger_text(const RunStatistics& run);
+
 // Writes them as JSON, with the phases and wall time of the job, threads and peak memory. Throws
 // Error{Resource}.
 void write_statistics(const std::string& path, const RunStatistics& run, const Job& job,
