@@ -38,6 +38,7 @@ class FluidFrames {
   private:
     bool is_cached(int number) const;
     bool can_give(int number) const;
+    bool load_state(Job& job);
     void start(int number, Job& job);
     Frame compute(int number, RunStatistics& run, Job& job);
     void compute_and_write(int number, RunStatistics& run, Job& job);
@@ -48,8 +49,9 @@ class FluidFrames {
     const Cache* cache_;
     std::string name_;
     std::unique_ptr<FluidSource> source_;
-    int saved_ = 0;        // the frame of the state on the disk
-    double saved_at_ = 0;  // when it was written, seconds
+    int saved_ = 0;           // the frame of the state on the disk
+    double saved_at_ = 0;     // when it was written, seconds
+    double saving_took_ = 0;  // seconds
 };
 
 }  // namespace gischt
