@@ -217,10 +217,10 @@ class Memory(KnocksCase):
         self.assertEqual(left, [])
 
     def test_simulation(self):
-        self.sweep((0, 20, 100, 250), "sim", "plume", "--set", "domain.resolution=192", "--frames", "1-1", "-o", "c", "--restart")
+        self.sweep((0, 60), "sim", "plume", "--set", "domain.resolution=128", "--frames", "1-1", "-o", "c", "--restart")
 
     def test_pictures(self):
-        self.sweep((0, 20, 100, 250), "render", "cloud", "--size", "8000x6000", "--spp", 1, "--time", "1s", "-o", "x.exr")
+        self.sweep((20, 100), "render", "cloud", "--size", "8000x6000", "--spp", 1, "--time", "1s", "-o", "x.exr")
 
 
 class MemoryLong(Memory):
