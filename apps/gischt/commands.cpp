@@ -262,9 +262,7 @@ void add_merge(CLI::App& app, CommandContext& context) {
         ->type_name("FILE")
         ->allow_extra_args(false);
     sub->callback([options, &context] {
-        context.action = [options, &context] {
-            return merge_films(*options, context.command_line);
-        };
+        context.action = [options, &context] { return merge_films(*options, context); };
     });
 }
 

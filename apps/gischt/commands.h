@@ -59,7 +59,7 @@ int make_ladder(const LadderOptions& options, CommandContext& context);
 int check_scene(const SceneOptions& options, CommandContext& context);
 int open_window(const SceneOptions& options, const CommandContext& context);
 int print_info(const std::string& target, Job& job);
-int merge_films(const MergeOptions& options, const std::string& command);
+int merge_films(const MergeOptions& options, CommandContext& context);
 int denoise_image(const DenoiseOptions& options, CommandContext& context);
 int convert_volume(const ConvertOptions& options, CommandContext& context);
 int compare_images(const CompareOptions& options);

@@ -59,17 +59,20 @@ class ProgressPrinter {
         if (style_ == ProgressStyle::Json) {
             nlohmann::json line = {{"fraction", fraction}, {"phase", phase}, {"elapsed", elapsed}};
             if (left >= 0) line["left"] = left;
-            fmt::print(stderr, "{}\n", line.dump());
-            return;
+            return put(line.dump() + "\n");
         }
         const std::string rest = left >= 0 ? ", " + duration_text(left) + " left" : "";
         if (style_ == ProgressStyle::Bar) {
             const auto filled = static_cast<std::size_t>(fraction * 30);
-            fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} % {}{}", std::string(filled, '#'),
-                       std::string(30 - filled, '.'), fraction * 100, phase, rest);
+            put(fmt::format("\r\033[K[{}{}] {:3.0f} % {}{}", std::string(filled, '#'),
+                            std::string(30 - filled, '.'), fraction * 100, phase, rest));
         } else {
-            fmt::print(stderr, "{:3.0f} % {}{}\n", fraction * 100, phase, rest);
+            put(fmt::format("{:3.0f} % {}{}\n", fraction * 100, phase, rest));
         }
+    }
+    // Nobody may be listening: that is no reason to end the work.
+    static void put(const std::string& text) {
+        std::fputs(text.c_str(), stderr);
         std::fflush(stderr);
     }
 
@@ -107,6 +110,8 @@ Console::Console(CommandContext& context) {
     signalled_job = &context.job;
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    // A terminal that closes; nohup has it ignored.
+    if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
 }
 

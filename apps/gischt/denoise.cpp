@@ -12,7 +12,7 @@ namespace gischt {
 int denoise_image(const DenoiseOptions& options, CommandContext& context) {
     const Console console(context);
     Image image = read_image(options.from);
-    denoise(image);
+    denoise(image, context.job);
     image.metadata.set("command", context.command_line);
     WriteOptions write;
     write.display.exposure = options.exposure;

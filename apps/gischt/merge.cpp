@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "commands.h"
+#include "console.h"
 #include "image/denoise.h"
 #include "io/image_file.h"
 #include "studio/film_keeper.h"
@@ -10,9 +11,10 @@
 namespace gischt {
 namespace {
 
-FilmFile sum_of(const std::vector<std::string>& paths) {
+FilmFile sum_of(const std::vector<std::string>& paths, Job& job) {
     FilmFile sum = read_film(paths[0]);
     for (std::size_t i = 1; i < paths.size(); ++i) {
+        job.check();
         const FilmFile part = read_film(paths[i]);
         std::string key;
         if (!is_same_picture(sum.metadata, part.metadata, key)) {
@@ -29,14 +31,14 @@ FilmFile sum_of(const std::vector<std::string>& paths) {
     return sum;
 }
 
-void write_merged(const std::string& path, const FilmFile& film) {
+void write_merged(const std::string& path, const FilmFile& film, Job& job) {
     if (is_film_file(path)) return write_film(path, film.state, film.metadata);
     Image image = film.state.image();
     const Film& f = *film.state.film;
     image.metadata = film.metadata;
     image.metadata.set("samples", fmt::format("{}", static_cast<double>(f.total_samples()) /
                                                         static_cast<double>(image.pixel_count())));
-    if (film.metadata.get("denoise") == "true") denoise(image);
+    if (film.metadata.get("denoise") == "true") denoise(image, job);
     WriteOptions options;
     if (const std::string tone = film.metadata.get("tone"); !tone.empty())
         options.display.tone = tone_kind(tone);
@@ -47,7 +49,8 @@ void write_merged(const std::string& path, const FilmFile& film) {
 
 }  // namespace
 
-int merge_films(const MergeOptions& options, const std::string& command) {
+int merge_films(const MergeOptions& options, CommandContext& context) {
+    const Console console(context);
     for (const std::string& path : options.outputs) {
         if (is_film_file(path) || is_image_file(path)) continue;
         std::vector<std::string> formats = image_extensions();
@@ -55,10 +58,11 @@ int merge_films(const MergeOptions& options, const std::string& command) {
         throw Error(ErrorKind::Usage, path, "has no extension that tells a format",
                     hint_for(path.substr(std::min(path.rfind('.'), path.size())), formats));
     }
-    FilmFile sum = sum_of(options.films);
-    sum.metadata.set("command", command);
+    FilmFile sum = sum_of(options.films, context.job);
+    sum.metadata.set("command", context.command_line);
     for (const std::string& path : options.outputs) {
-        write_merged(path, sum);
+        context.job.check();
+        write_merged(path, sum, context.job);
         fmt::print("{}\n", path);
     }
     return 0;

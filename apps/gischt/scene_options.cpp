@@ -144,7 +144,7 @@ std::string picture_path(const std::string& output, const std::string& name) {
 void finish_statistics(const RunStatistics& run, const CommandContext& context, double start) {
     if (context.verbose > 0) {
         for (const auto& [phase, seconds] : context.job.times()) {
-            fmt::print(stderr, "{:<12} {:8.2f} s\n", phase, seconds);
+            std::fputs(fmt::format("{:<12} {:8.2f} s\n", phase, seconds).c_str(), stderr);
         }
         fmt::print(stderr, "{}", ledger_text(run));
     }

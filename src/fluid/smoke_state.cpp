@@ -50,10 +50,8 @@ void for_arrays(State& s, F&& f) {
 }  // namespace
 
 void save_smoke_state(const SmokeState& state, int frame, const std::filesystem::path& path) {
-    std::filesystem::path part = path;
-    part += ".part";
     {
-        std::ofstream out(part, std::ios::binary);
+        std::ofstream out(path, std::ios::binary);
         WordHash hash;
         const auto write = [&](const void* data, std::size_t bytes) {
             hash.add(data, bytes);
@@ -78,14 +76,11 @@ void save_smoke_state(const SmokeState& state, int frame, const std::filesystem:
         out.flush();
         if (!out) {
             std::error_code ignored;
-            std::filesystem::remove(part, ignored);
+            std::filesystem::remove(path, ignored);
             throw Error(ErrorKind::Resource, path.string(), "the state cannot be written",
                         "is the folder there and the disk not full?");
         }
     }
-    std::error_code error;
-    std::filesystem::rename(part, path, error);
-    if (error) throw Error(ErrorKind::Resource, path.string(), error.message());
 }
 
 SmokeState load_smoke_state(const Domain& domain, const BlockMap& blocks,

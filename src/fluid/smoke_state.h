@@ -7,7 +7,7 @@
 
 namespace gischt {
 
-// Writes a state and the number of its frame to one file, under another name until it is complete:
+// Writes a state and the number of its frame to one file, which is whole when this returns:
 // little-endian, float32, every tile, and a hash at the end. 24 bytes per cell in 3-D. Throws
 // Error{Resource} when the disk does not take it.
 void save_smoke_state(const SmokeState& state, int frame, const std::filesystem::path& path);

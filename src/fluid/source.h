@@ -65,10 +65,10 @@ class FluidSource {
     // What was measured since the last call: per probe its rows (see fluid/probes/probe.h).
     virtual std::vector<std::vector<std::vector<double>>> take_probe_rows() { return {}; }
 
-    // Everything that a later frame depends on, in one file that appears at once; the resumed run
-    // gives the same bits as the uninterrupted one. Nothing for stateless sources. load_state()
-    // throws Error{Input} for a file that is damaged or of another domain; the source is then
-    // unchanged.
+    // Everything that a later frame depends on, in one file that is whole when save_state()
+    // returns (who must not lose the file before gives it an AtomicFile); the resumed run gives the
+    // same bits as the uninterrupted one. Nothing for stateless sources. load_state() throws
+    // Error{Input} for a file that is damaged or of another domain; the source is then unchanged.
     virtual void save_state(const std::filesystem::path& path) const = 0;
     virtual void load_state(const std::filesystem::path& path) = 0;
     // Number of the last frame computed or loaded; 0 in the beginning.

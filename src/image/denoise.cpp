@@ -69,6 +69,7 @@ Plane box_mean(const Plane& in, int width, int height, int radius) {
 }
 
 struct Denoiser {
+    Job& job;
     int width, height;
     Color picture, variance;  // of the picture, smoothed
     std::array<Color, 2> half;
@@ -130,6 +131,7 @@ struct Denoiser {
         std::array<Plane, strengths> total;
         for (Plane& t : total) t.assign(w * static_cast<std::size_t>(y1 - y0), 0.0f);
         for (int dy = -window; dy <= window; ++dy) {
+            job.check();
             for (int dx = -window; dx <= window; ++dx) {
                 for (int r = 0; r < rows; ++r) {
                     row_distance(guide, noise, y0 - patch + r, dx, dy, apart);
@@ -294,9 +296,9 @@ void check_input(const Image& image) {
 
 }  // namespace
 
-void denoise(Image& image) {
+void denoise(Image& image, Job& job) {
     check_input(image);
-    Denoiser d{image.width, image.height, {}, {}, {}, {}};
+    Denoiser d{job, image.width, image.height, {}, {}, {}, {}};
     const std::array<const char*, 3> names{"R", "G", "B"};
     for (std::size_t c = 0; c < 3; ++c) {
         const auto plane = image.channel(names[c]);
@@ -306,7 +308,9 @@ void denoise(Image& image) {
     d.set_variance(Plane(v.begin(), v.end()));
     d.split();
     d.filter(0);
+    job.progress(0.5, "denoise");
     d.filter(1);
+    job.progress(1, "denoise");
     Color out = d.blended();
     d.keep_mean(out);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/job.h"
 #include "image/image.h"
 
 namespace gischt {
@@ -17,7 +18,8 @@ namespace gischt {
 // weights from the other, at three strengths, and the other half tells the error of each strength;
 // per pixel the one of least error counts, which may be the picture as it is. What the mean of the
 // picture changed by is given back in proportion to the noise. A pixel without noise around it
-// keeps its bits. The result is the same on any number of threads.
-void denoise(Image& image);
+// keeps its bits. The result is the same on any number of threads. Some 10 s per megapixel and
+// core.
+void denoise(Image& image, Job& job);
 
 }  // namespace gischt

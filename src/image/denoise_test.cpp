@@ -52,7 +52,8 @@ Image with_noise(Image image, std::uint64_t seed) {
 }
 
 Image denoised(Image image) {
-    denoise(image);
+    Job job;
+    denoise(image, job);
     return image;
 }
 
@@ -88,16 +89,26 @@ TEST(Denoise, SameBitsOnAnyNumberOfThreads) {
     EXPECT_EQ(denoised(noisy), many);
 }
 
+TEST(Denoise, StopsWhenAsked) {
+    Image image = with_noise(truth(1), 4);
+    const Image before = image;
+    Job job;
+    job.cancel();
+    EXPECT_THROW(denoise(image, job), Error);
+    EXPECT_EQ(image, before);
+}
+
 TEST(Denoise, SaysWhatIsMissing) {
     Image image = Image::rgb(4, 4);
-    EXPECT_THROW(denoise(image), Error);
+    Job job;
+    EXPECT_THROW(denoise(image, job), Error);
     image.add_channel("variance.Y")[3] = std::nanf("");
-    EXPECT_THROW(denoise(image), Error);
+    EXPECT_THROW(denoise(image, job), Error);
     image.channel("variance.Y")[3] = -1;
-    EXPECT_THROW(denoise(image), Error);
+    EXPECT_THROW(denoise(image, job), Error);
     image.channel("variance.Y")[3] = 1;
-    denoise(image);
-    EXPECT_THROW(denoise(image), Error);
+    denoise(image, job);
+    EXPECT_THROW(denoise(image, job), Error);
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
+#include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -29,14 +31,50 @@ fs::path follow_links(fs::path path) {
     return path;
 }
 
-// A name that no other process or thread uses: ".stem.pid-count.ext", the stem cut such that the
-// whole stays below the 255 bytes that file systems allow.
+constexpr std::string_view temporary_mark = ".gischt-";
+std::atomic<unsigned> temporaries_named{0};
+
+// A name that no other process or thread uses: ".stem.gischt-PID-COUNT.ext", the stem cut such that
+// the whole stays below the 255 bytes that file systems allow.
 fs::path temporary_name(const fs::path& target) {
-    static std::atomic<unsigned> count{0};
-    const std::string unique = fmt::format("{}-{}", ::getpid(), count.fetch_add(1));
+    const std::string unique =
+        fmt::format("gischt-{}-{}", ::getpid(), temporaries_named.fetch_add(1));
     const std::string stem = target.stem().string().substr(0, 150);
     const std::string extension = target.extension().string().substr(0, 50);
     return target.parent_path() / ("." + stem + "." + unique + extension);
+}
+
+// Whether a file of that name was made by a process that has ended. A process of the same number as
+// ours may have run in another container: a count that we have not come to is not ours.
+bool is_of_dead_process(std::string_view name) {
+    const std::size_t mark = name.rfind(temporary_mark);
+    if (!name.starts_with('.') || mark == name.npos) return false;
+    const char *at = name.data() + mark + temporary_mark.size(), *end = name.data() + name.size();
+    pid_t process = 0;
+    unsigned number = 0;
+    const auto dash = std::from_chars(at, end, process);
+    if (dash.ec != std::errc() || dash.ptr == end || *dash.ptr != '-' || process <= 0) return false;
+    if (std::from_chars(dash.ptr + 1, end, number).ec != std::errc()) return false;
+    if (process == ::getpid()) return number >= temporaries_named.load();
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+// Processes of other machines and containers are not seen, but their locks are.
+bool is_locked(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    const bool locked = descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) != 0;
+    if (descriptor >= 0) ::close(descriptor);
+    return locked;
+}
+
+// So that the new name survives a loss of power. Some file systems cannot sync a folder: then there
+// is nothing better to be done.
+void sync_folder(const fs::path& folder) {
+    const int descriptor =
+        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::fsync(descriptor);
+    ::close(descriptor);
 }
 
 std::string hint_for_errno(int code) {
@@ -76,6 +114,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
             fail(fmt::format("cannot make the folder '{}'", target.parent_path().string()));
         }
     }
+    remove_orphans(target.parent_path());
     do {
         temporary_ = temporary_name(target).string();
         descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -84,6 +123,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
         temporary_.clear();
         fail("cannot write");
     }
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // shows the others that it is not an orphan
 }
 
 AtomicFile::~AtomicFile() {
@@ -114,6 +154,18 @@ void AtomicFile::commit() {
     if (closed != 0) fail("cannot write");
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot write");
     temporary_.clear();
+    sync_folder(fs::path(target_).parent_path());
+}
+
+void remove_orphans(const fs::path& folder) {
+    std::error_code error;
+    fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        const fs::path& path = entry->path();
+        std::error_code ignored;
+        if (!is_of_dead_process(path.filename().native()) || is_locked(path)) continue;
+        fs::remove(path, ignored);
+    }
 }
 
 }  // namespace gischt

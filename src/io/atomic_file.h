@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -12,8 +13,10 @@ namespace gischt {
 //   AtomicFile file(path);
 //   file.write(bytes);            // or let a library write to file.temporary()
 //   file.commit();
-// All members throw Error{Resource} with the path and the system's reason when the disk is full,
-// the folder cannot be made or written, and Error{Usage} when `path` is a folder or a device.
+// A process that is killed leaves its temporary file behind; the next AtomicFile in that folder
+// removes it. All members throw Error{Resource} with the path and the system's reason when the disk
+// is full, the folder cannot be made or written, and Error{Usage} when `path` is a folder or a
+// device.
 class AtomicFile {
   public:
     // Makes the folder where it is missing, and the temporary file; its name keeps the extension. A
@@ -38,5 +41,10 @@ class AtomicFile {
     std::string temporary_;  // empty once it has been renamed
     int descriptor_ = -1;
 };
+
+// Removes the temporary files that killed processes left in a folder: those whose name tells a
+// process that no longer runs, and which nobody has locked. Never throws; what cannot be removed
+// stays.
+void remove_orphans(const std::filesystem::path& folder);
 
 }  // namespace gischt

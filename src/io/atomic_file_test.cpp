@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/atomic_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 
 #include "io/file_bytes.h"
 #include "io/test_files.h"
@@ -69,6 +72,48 @@ TEST(AtomicFile, RefusesFoldersDevicesAndPathsThroughFiles) {
     write_text(folder.file("a"), "x");
     EXPECT_EQ(outcome([&] { write_text(folder.file("a/b"), "x"); }), Outcome::Resource);
     EXPECT_EQ(outcome([&] { write_text("/proc/nowhere/b", "x"); }), Outcome::Resource);
+}
+
+// A process that ends without a word, after it has begun a file.
+int killed_writer(const std::string& path) {
+    const pid_t child = fork();
+    if (child == 0) {
+        AtomicFile file(path);
+        file.write(std::span<const char>("half", 4));
+        kill(getpid(), SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+TEST(AtomicFile, RemovesWhatKilledProcessesLeft) {
+    const TestFolder folder("atomic");
+    ASSERT_EQ(killed_writer(folder.file("a.vdb")), SIGKILL);
+    ASSERT_EQ(killed_writer(folder.file("b.png")), SIGKILL);
+    EXPECT_EQ(folder.count(), 1) << "the second has taken away what the first left";
+    // Not what lives: a file of our own, and what others have named alike.
+    const AtomicFile open(folder.file("c"));
+    put(folder.file(".x.gischt-1-0.vdb"), "of a process that runs");
+    put(folder.file(".x.gischt-999999999.vdb"), "without a count");
+    put(folder.file("x.gischt-999999999-0.vdb"), "not hidden");
+    write_text(folder.file("a.vdb"), "whole");
+    EXPECT_EQ(folder.count(), 5);
+    EXPECT_EQ(read_bytes(folder.file("a.vdb")), "whole");
+    EXPECT_TRUE(std::filesystem::exists(open.temporary()));
+}
+
+TEST(AtomicFile, LeavesFilesThatAreLocked) {
+    const TestFolder folder("atomic");
+    const std::string path = folder.file(".x.gischt-999999999-0.vdb");  // beyond any process id
+    put(path, "of a process on another machine");
+    const int descriptor = open(path.c_str(), O_RDONLY);
+    ASSERT_EQ(flock(descriptor, LOCK_EX), 0);
+    remove_orphans(folder.file("."));
+    EXPECT_EQ(folder.count(), 1);
+    close(descriptor);
+    remove_orphans(folder.file("."));
+    EXPECT_EQ(folder.count(), 0);
 }
 
 TEST(AtomicFile, FollowsSymbolicLinks) {

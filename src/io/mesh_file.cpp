@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "io/file_bytes.h"
+#include "io/obj.h"
 #include "io/ply.h"
 
 namespace gischt {
@@ -205,7 +206,11 @@ Mesh merge(const aiScene& scene) {
     for_parts(scene, *scene.mRootNode, {}, 0, [&](const aiMesh& part, const aiMatrix4x4& place) {
         append(mesh, part, Placement(place), with_normals, with_uvs);
     });
-    // A normal of no length, or one that is not finite, cannot be shaded.
+    return mesh;
+}
+
+// A normal of no length, or one that is not finite, cannot be shaded.
+void make_unit_normals(Mesh& mesh) {
     for (const Vec3f& n : mesh.normals) {
         if (!(dot(n, n) > 1e-12f && dot(n, n) < 1e12f)) {
             mesh.normals.clear();
@@ -213,7 +218,6 @@ Mesh merge(const aiScene& scene) {
         }
     }
     for (Vec3f& n : mesh.normals) n = normalize(n);
-    return mesh;
 }
 
 void take_color(MeshFile& file, const aiScene& scene) {
@@ -236,6 +240,27 @@ void take_color(MeshFile& file, const aiScene& scene) {
         }
         if (file.base_color || !file.base_color_file.empty()) return;
     }
+}
+
+// By Assimp.
+MeshFile read_gltf(const std::string& path) {
+    MeshFile file;
+    check_gltf(path);
+    Assimp::Importer importer;
+    try {
+        importer.SetIOHandler(new MemoryFiles);  // which it deletes
+        const aiScene* scene = importer.ReadFile(path, 0);
+        if (!scene) refuse(path, fmt::format("cannot be read ({})", importer.GetErrorString()));
+        file.mesh = merge(*scene);
+        take_color(file, *scene);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::Resource, path, "the memory does not suffice for this mesh");
+    } catch (const std::exception& e) {
+        refuse(path, fmt::format("cannot be read ({})", e.what()));
+    }
+    return file;
 }
 
 // Keeps what can be used.
@@ -275,21 +300,8 @@ MeshFile read_mesh(const std::string& path, Job& job) {
         file.mesh = read_ply(path);
         return file;
     }
-    if (lower_extension(path) != ".obj") check_gltf(path);
-    Assimp::Importer importer;
-    try {
-        importer.SetIOHandler(new MemoryFiles);  // which it deletes
-        const aiScene* scene = importer.ReadFile(path, 0);
-        if (!scene) refuse(path, fmt::format("cannot be read ({})", importer.GetErrorString()));
-        file.mesh = merge(*scene);
-        take_color(file, *scene);
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::Resource, path, "the memory does not suffice for this mesh");
-    } catch (const std::exception& e) {
-        refuse(path, fmt::format("cannot be read ({})", e.what()));
-    }
+    file = lower_extension(path) == ".obj" ? read_obj(path, job) : read_gltf(path);
+    make_unit_normals(file.mesh);
     if (file.mesh.triangles.empty()) refuse(path, "has no triangles");
     check_color(file, path, job);
     return file;

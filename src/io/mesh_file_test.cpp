@@ -132,6 +132,35 @@ TEST(MeshFile, PolygonsBecomeTriangles) {
     EXPECT_NEAR(surface_area(mesh), 2.5, 1e-6);
 }
 
+TEST(MeshFile, ObjSharesPointsAndNamesAColor) {
+    const TestFolder folder("mesh");
+    put(folder.file("a b.mtl"),
+        "newmtl plain\nNs 3\nnewmtl red brick\nKd 0.5 0.25 0.125\nmap_Kd -s 1 1 1 wall.png\n");
+    const std::string head =
+        "mtllib a b.mtl\nusemtl plain\nv 0 0 0\nv 1 0 0 # right\nv 1 1 0 1\nv +0 1e0 \\\n0\r\n"
+        "vn 0 0 2\ns off\nf 1//1 2//1 -2//1\nusemtl red brick\n";
+    put(folder.file("a.obj"), head + "f 1//1 3//1 4//-1\n");
+    Job job;
+    const MeshFile file = read_mesh(folder.file("a.obj"), job);
+    EXPECT_EQ(file.mesh.points.size(), 4u);
+    EXPECT_EQ(file.mesh.triangles, (std::vector<Vec3i>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(file.mesh.normals, std::vector<Vec3f>(4, {0, 0, 1}));
+    EXPECT_TRUE(file.mesh.uvs.empty());
+    EXPECT_EQ(file.base_color, (Vec3f{0.5f, 0.25f, 0.125f}));
+    EXPECT_EQ(file.base_color_file, folder.file("wall.png"));
+    for (const char* bad : {"f 1 2", "f 1 2 0", "f 1 2 -5", "f 1/1 2 3", "f 1/1/1/1 2 3", "v 1 2",
+                            "v 1 2 nan", "v 1 2 1e99", "f 1 2 3x", "f 1 2 99999999999999999999"}) {
+        put(folder.file("b.obj"), head + bad);
+        EXPECT_EQ(outcome([&] { read_mesh(folder.file("b.obj"), job); }), Outcome::Input) << bad;
+    }
+    // A library that is missing or broken costs the colour only.
+    std::string told;
+    job.on_message = [&](Job::Level, std::string_view text) { told += text; };
+    put(folder.file("a b.mtl"), "newmtl red brick\nKd x\n");
+    EXPECT_FALSE(read_mesh(folder.file("a.obj"), job).base_color);
+    EXPECT_NE(told.find("a b.mtl"), std::string::npos) << told;
+}
+
 // Velocities and normals of points, other elements and properties passed over, both orders of
 // bytes.
 TEST(MeshFile, PlyHoldsVelocities) {

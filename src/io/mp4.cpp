@@ -97,8 +97,9 @@ class Process {
         ::close(feed_);
         feed_ = -1;
         const int status = wait();
-        if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
         const std::string said = last_words();
+        // It says errors only, and ends with 0 when the disk takes no more.
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.empty()) return;
         throw Error(ErrorKind::Resource, where_,
                     said.empty() ? "ffmpeg failed" : fmt::format("ffmpeg failed: {}", said));
     }

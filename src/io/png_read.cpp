@@ -27,7 +27,8 @@ struct Decoder {
     const std::string& bytes;
     std::size_t position = 0;
     int width = 0, height = 0, channels = 0, bits = 0;
-    double gamma = 0;  // exponent from encoded to linear; 0 for sRGB
+    double packed_row = 0;  // bytes of a row before it is expanded
+    double gamma = 0;       // exponent from encoded to linear; 0 for sRGB
     std::vector<unsigned char> pixels;
     std::vector<unsigned char*> rows;
     std::array<char, 200> message{};
@@ -54,6 +55,7 @@ bool read_header(Decoder& d, png_structp png, png_infop info) {
     png_set_read_fn(png, &d, on_read);
     png_set_user_limits(png, 65536, 65536);
     png_read_info(png, info);
+    d.packed_row = static_cast<double>(png_get_rowbytes(png, info));
     png_set_expand(png);
     png_set_gray_to_rgb(png);
     png_set_interlace_handling(png);
@@ -82,8 +84,8 @@ void allocate_rows(Decoder& d, const std::string& path) {
     const auto row = static_cast<std::size_t>(d.width) * static_cast<std::size_t>(d.channels) *
                      static_cast<std::size_t>(d.bits / 8);
     const auto height = static_cast<std::size_t>(d.height);
-    // Deflate shrinks by 1032 at most, and one bit may have become eight bytes.
-    if (static_cast<double>(row) * d.height > 64.0 * 1100 * static_cast<double>(d.bytes.size())) {
+    // Deflate shrinks by 1032 at most (RFC 1951).
+    if (d.packed_row * d.height > 1032.0 * static_cast<double>(d.bytes.size())) {
         throw Error(ErrorKind::Input, path,
                     "broken PNG file: claims more pixels than its bytes can hold");
     }

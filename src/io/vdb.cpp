@@ -99,7 +99,9 @@ auto guarded(const std::string& path, const std::string& grid, F&& f) {
     } catch (const std::ios_base::failure&) {
         throw fail("it reaches beyond the end of the file");
     } catch (const std::bad_alloc&) {
-        throw fail("it asks for more memory than there is");
+        // Its sizes have been found to fit its bytes.
+        throw Error(ErrorKind::Resource, path,
+                    fmt::format("grid '{}' does not fit into memory", grid));
     } catch (const std::exception& e) {
         throw fail(e.what());
     }

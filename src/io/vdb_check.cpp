@@ -25,6 +25,7 @@ constexpr Layout layouts[] = {{"float", 4, 1},  {"double", 8, 1}, {"vec3s", 12, 
 
 constexpr std::uint32_t zip = 1, active_mask = 2, blosc = 4;  // OpenVDB's compression flags
 constexpr int leaf_size = 512, leaf_mask_bytes = leaf_size / 8;
+constexpr int leaf_edge = 8, root_child = 4096;  // cells
 
 class TreeWalk {
   public:
@@ -66,10 +67,21 @@ class TreeWalk {
     void walk_root() {
         in_.skip(layout_.size);  // background
         const auto tiles = in_.number<std::uint32_t>(), children = in_.number<std::uint32_t>();
-        in_.skip(std::int64_t{tiles} * (12 + layout_.size + 1));  // origin, value, state
+        for (std::uint32_t t = 0; t < tiles; ++t) {
+            walk_origin(root_child);
+            in_.skip(layout_.size + 1);  // value, state
+        }
         for (std::uint32_t c = 0; c < children; ++c) {
-            in_.skip(12);
+            walk_origin(root_child);
             walk_node(5);
+        }
+    }
+
+    // The lowest cell of a node or tile: a multiple of its edge. Others would make leafs that lie
+    // across tiles.
+    void walk_origin(int edge) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (in_.number<std::int32_t>() % edge != 0) fail("a node lies off its place");
         }
     }
 
@@ -92,7 +104,9 @@ class TreeWalk {
     void walk_leaf_values() {
         const std::string type = layout_.type;
         if (type == "bool" || type == "mask") {
-            in_.skip(leaf_mask_bytes + 12 + (type == "bool" ? leaf_mask_bytes : 0));
+            in_.skip(leaf_mask_bytes);
+            walk_origin(leaf_edge);
+            in_.skip(type == "bool" ? leaf_mask_bytes : 0);
             return;
         }
         skip_values(leaf_size, count_on(mask(leaf_size)));

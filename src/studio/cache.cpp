@@ -71,6 +71,7 @@ Cache::Cache(fs::path folder, const LoadedScene& scene, bool restart, bool keeps
     if (error)
         throw Error(ErrorKind::Resource, folder_.string(),
                     "cannot make this folder: " + error.message());
+    if (!keeps_scene || restart || !is_cache(folder_)) claim();
     if (is_cache(folder_)) {
         const std::string motion = marked(folder_, motion_mark);
         if (restart) {
@@ -87,6 +88,12 @@ Cache::Cache(fs::path folder, const LoadedScene& scene, bool restart, bool keeps
         motion_mark + scene.motion_hash + "\n" + name_mark + scene.name + "\n" + scene.toml;
     file.write(std::span<const char>(text));
     file.commit();
+}
+
+void Cache::claim() const {
+    if (lock_.is_held()) return;
+    lock_ = CacheLock(folder_);
+    remove_orphans(folder_);
 }
 
 fs::path Cache::vdb(std::size_t fluid, int frame) const {

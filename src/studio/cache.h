@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scene/load.h"
+#include "studio/cache_lock.h"
 
 namespace gischt {
 
@@ -16,7 +17,9 @@ class Cache {
     // Opens or makes the folder. Frames of the same motion are kept and used; `restart` removes
     // them. Throws Error{Usage} when the folder holds frames of another motion, Error{Resource}
     // when it cannot be written. With `keeps_scene` the scene that lies in it stays: who looks at a
-    // cache in another light does not change it.
+    // cache in another light does not change it, and shares it with others until a frame is
+    // missing. Else the cache is this process's alone from here on: Error{Usage} while another one
+    // has it.
     Cache(std::filesystem::path folder, const LoadedScene& scene, bool restart,
           bool keeps_scene = false);
 
@@ -24,8 +27,14 @@ class Cache {
     std::filesystem::path vdb(std::size_t fluid, int frame) const;
     std::filesystem::path state(std::size_t fluid) const;
 
+    // To be called before anything is written: makes the cache this process's alone while this
+    // object lives, and removes what killed processes left half written. Throws what CacheLock()
+    // does.
+    void claim() const;
+
   private:
     std::filesystem::path folder_;
+    mutable CacheLock lock_;
     std::vector<std::string> names_;  // of the fluids, unique
 };
 

@@ -3,17 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/version.h"
+#include "io/atomic_file.h"
 
 namespace gischt {
 namespace fs = std::filesystem;
 
-// A state is written at most this often, in seconds: it costs time, and what is lost without it is
-// simulated again.
-constexpr double state_interval = 5;
+// A state is written this often, in seconds, and more often where that takes at most this share of
+// the time: what comes after it is simulated again when the process is killed.
+constexpr double state_interval = 5, state_share = 0.05;
 
 FluidFrames::FluidFrames(const LoadedScene& scene, std::size_t fluid, const Cache* cache)
     : scene_(scene),
@@ -44,16 +46,33 @@ bool FluidFrames::is_cached(int number) const {
     return cache_ && fs::is_regular_file(cache_->vdb(fluid_, number), ignored);
 }
 
+// Whether the source could go on from the saved state. A damaged one is no loss but of time: the
+// frames come again with the same bits.
+bool FluidFrames::load_state(Job& job) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(cache_->state(fluid_), ignored)) return false;
+    try {
+        source_->load_state(cache_->state(fluid_));
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::Input) throw;
+        job.warn(fmt::format("{}: {}; '{}' is simulated from its beginning", e.where(), e.fact(),
+                             name_));
+        return false;
+    }
+    saved_ = source_->last_frame();
+    return true;
+}
+
 // Makes a source that can go on to `number`: from the saved state where that is earlier, else from
 // the beginning.
 void FluidFrames::start(int number, Job& job) {
     source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
     report_unmet_solids(scene_.scene, scene_.scene.fluids[fluid_], job);
-    std::error_code ignored;
-    if (cache_ && fs::is_regular_file(cache_->state(fluid_), ignored)) {
-        source_->load_state(cache_->state(fluid_));
-        saved_ = source_->last_frame();
-        if (saved_ >= number) source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+    if (cache_) {
+        cache_->claim();
+        if (load_state(job) && (saved_ < 0 || saved_ >= number)) {
+            source_ = make_source(scene_.scene, scene_.scene.fluids[fluid_]);
+        }
     }
     if (tables_) source_->set_probes(tables_->probes());
 }
@@ -76,11 +95,20 @@ Frame FluidFrames::compute(int number, RunStatistics& run, Job& job) {
 }
 
 void FluidFrames::save_state(bool now) {
-    if (!source_->is_sequential() || saved_ == source_->last_frame()) return;
-    if (!now && now_seconds() - saved_at_ < state_interval) return;
-    source_->save_state(cache_->state(fluid_));
+    // A state of a later frame stays: a frame that was missing in between is no reason to go back.
+    if (!source_->is_sequential() || saved_ >= source_->last_frame()) return;
+    const double begin = now_seconds();
+    if (!now && begin - saved_at_ < std::min(state_interval, saving_took_ / state_share)) return;
+    AtomicFile file(cache_->state(fluid_).string());
+    try {
+        source_->save_state(file.temporary());
+    } catch (const Error& e) {
+        throw Error(e.kind(), file.path(), e.fact(), e.hint());
+    }
+    file.commit();
     saved_ = source_->last_frame();
     saved_at_ = now_seconds();
+    saving_took_ = saved_at_ - begin;
 }
 
 void FluidFrames::compute_and_write(int number, RunStatistics& run, Job& job) {

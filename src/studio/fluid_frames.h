@@ -42,6 +42,7 @@ class FluidFrames {
   private:
     bool is_cached(int number) const;
     bool can_give(int number) const;
+    bool load_state(Job& job);
     void start(int number, Job& job);
     Frame compute(int number, RunStatistics& run, Job& job);
     void compute_and_write(int number, RunStatistics& run, Job& job);
@@ -55,8 +56,9 @@ class FluidFrames {
     std::unique_ptr<FluidSource> source_;
     std::optional<ProbeTables> tables_;
     bool reported_unmeasured_ = false;
-    int saved_ = 0;        // the frame of the state on the disk
-    double saved_at_ = 0;  // when it was written, seconds
+    int saved_ = 0;           // the frame of the state on the disk
+    double saved_at_ = 0;     // when it was written, seconds
+    double saving_took_ = 0;  // seconds
 };
 
 }  // namespace gischt

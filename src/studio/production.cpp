@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "base/version.h"
 #include "image/denoise.h"
+#include "io/atomic_file.h"
 #include "io/image_file.h"
 #include "io/mp4.h"
 #include "studio/film_keeper.h"
@@ -51,6 +52,10 @@ class Outputs {
                             hint_for(fs::path(path).extension().string(), formats()));
             }
         }
+        // Who cannot write what comes of the work learns it before the work.
+        const int first = order.turntable > 0 ? 1 : order.frames.first;
+        for (const std::string& path : order.outputs)
+            const AtomicFile probe(is_movie(path) ? path : path_of(path, first));
     }
 
     WriteOptions options(const Image& image) const {
@@ -142,6 +147,7 @@ RenderSettings settings_of(const Scene& scene, const Order& order) {
     s.filter_radius = scene.film.filter_radius;
     s.preview = order.preview;
     s.adaptive = order.adaptive;
+    s.checkpoint_interval = 1;  // s; less often where saving takes more than a twentieth of it
     s.aovs = scene.film.aovs;
     if (scene.film.denoise) s.aovs.emplace_back("variance");
     return s;
@@ -193,7 +199,7 @@ RenderResult render_with(const LoadedScene& scene, const View& view, RenderSetti
                                     scene.scene.render.method),
                         "take path or march, or turn it off");
         }
-        denoise(result.image);
+        denoise(result.image, job);
     }
     return result;
 }

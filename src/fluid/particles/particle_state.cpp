@@ -25,34 +25,27 @@ struct Header {
 }  // namespace
 
 void save_particle_state(const Particles& particles, int frame, const std::filesystem::path& path) {
-    std::filesystem::path part = path;
-    part += ".part";
-    {
-        std::ofstream out(part, std::ios::binary);
-        WordHash hash;
-        const auto write = [&](const void* data, std::size_t bytes) {
-            hash.add(data, bytes);
-            out.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
-        };
-        write(magic.data(), magic.size());
-        const Header header{particles.size(), frame};
-        write(&header, sizeof header);
-        for_particle_arrays(particles, [&](const auto& array) {
-            write(array.data(), array.size() * sizeof(array[0]));
-        });
-        const std::uint64_t value = hash.value();
-        out.write(reinterpret_cast<const char*>(&value), sizeof value);
-        out.flush();
-        if (!out) {
-            std::error_code ignored;
-            std::filesystem::remove(part, ignored);
-            throw Error(ErrorKind::Resource, path.string(), "the state cannot be written",
-                        "is the folder there and the disk not full?");
-        }
+    std::ofstream out(path, std::ios::binary);
+    WordHash hash;
+    const auto write = [&](const void* data, std::size_t bytes) {
+        hash.add(data, bytes);
+        out.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+    };
+    write(magic.data(), magic.size());
+    const Header header{particles.size(), frame};
+    write(&header, sizeof header);
+    for_particle_arrays(particles, [&](const auto& array) {
+        write(array.data(), array.size() * sizeof(array[0]));
+    });
+    const std::uint64_t value = hash.value();
+    out.write(reinterpret_cast<const char*>(&value), sizeof value);
+    out.flush();
+    if (!out) {
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+        throw Error(ErrorKind::Resource, path.string(), "the state cannot be written",
+                    "is the folder there and the disk not full?");
     }
-    std::error_code error;
-    std::filesystem::rename(part, path, error);
-    if (error) throw Error(ErrorKind::Resource, path.string(), error.message());
 }
 
 Particles load_particle_state(const std::filesystem::path& path, int& frame) {
