@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "solve/diffusion.h"
+
 namespace gischt {
 
 Ledger::Ledger(const Domain& domain, const BlockMap& blocks, const SolidField& solids)
@@ -80,7 +82,7 @@ double Ledger::open_part(int axis, const Vec3i& face) const {
 }
 
 // What leaves through open sides: on each face the volume that passes it in dt, filled as the cells
-// behind the face are, layer by layer. What enters there is ambient air, without any.
+// behind the face are, layer by layer. What enters there is counted by swept_in().
 double Ledger::swept_out(const SparseField& field, const FaceField& velocity, double dt) const {
     const double sum = parallel_sum(blocks_.size(), 1, [&](int block) {
         if (!field.active[static_cast<std::size_t>(block)]) return 0.0;
@@ -102,25 +104,51 @@ double Ledger::swept_out(const SparseField& field, const FaceField& velocity, do
     return domain_.cell_volume() * sum;
 }
 
-// Backward Euler conducts by the differences at its end; see diffuse().
-double Ledger::conducted_in(const SparseField& field, double diffusivity, double dt) const {
-    const double number = diffusivity * dt / (domain_.h * domain_.h);
-    const Borders borders = domain_.scalar_borders();
+// What comes in through inflows, and through open sides that hold what lies outside.
+double Ledger::swept_in(const ScalarHold& held, const FaceField& velocity, double dt) const {
+    if (held.is_plain) return 0;
     const double sum = parallel_sum(blocks_.size(), 1, [&](int block) {
-        if (!field.active[static_cast<std::size_t>(block)]) return 0.0;
+        double in = 0;
+        for_side_cells(
+            domain_, blocks_.cells(block), [&](int a, int end, const Vec3i&, const Vec3i& face) {
+                const SideKind kind = domain_.side_of(a, end);
+                if (kind != SideKind::Open && kind != SideKind::Inflow) return;
+                const double inward =
+                    (end == 0 ? 1 : -1) * static_cast<double>(velocity.get(a, face));
+                in += std::max(inward * dt / domain_.h * open_part(a, face), 0.0) *
+                      static_cast<double>(held.value[static_cast<std::size_t>(2 * a + end)]);
+            });
+        return in;
+    });
+    return domain_.cell_volume() * sum;
+}
+
+// Backward Euler conducts by the differences at its end; see diffuse(), which holds an inflow's
+// value on the side itself.
+double Ledger::conducted_in(const SparseField& field, const ScalarHold& held, double diffusivity,
+                            double dt) const {
+    const double number = diffusivity * dt / (domain_.h * domain_.h);
+    const Borders borders = scalar_sides(domain_, held).rule;
+    const double sum = parallel_sum(blocks_.size(), 1, [&](int block) {
+        if (held.is_plain && !field.active[static_cast<std::size_t>(block)]) return 0.0;
         double in = 0;
         for_side_cells(
             domain_, blocks_.cells(block),
             [&](int a, int end, const Vec3i& cell, const Vec3i& face) {
                 const Border rule = borders(a, end);
-                // Zero at the centre of the cell beyond, or on the side itself.
+                // Held at the centre of the cell beyond, or on the side itself.
                 const double steepness = rule == Border::Zero ? 1 : rule == Border::Odd ? 2 : 0;
-                in -= open_part(a, face) * steepness * number *
-                      static_cast<double>(field.values.get(cell));
+                const float beyond = held.value[static_cast<std::size_t>(2 * a + end)];
+                in += open_part(a, face) * steepness * number *
+                      static_cast<double>(beyond - field.values.get(cell));
             });
         return in;
     });
     return domain_.cell_volume() * sum;
+}
+
+const ScalarHold& Ledger::held(std::size_t which) const {
+    return which == 0 ? domain_.held.density : domain_.held.temperature;
 }
 
 // The change since the last sum.
@@ -133,9 +161,11 @@ double Ledger::change(std::size_t which, const SparseField& field) {
 void Ledger::begin_step(const Scalars& now, const FaceField& velocity, double dt) {
     const std::array<const SparseField*, 2> fields{now.density, now.temperature};
     for (std::size_t i = 0; i < 2; ++i) {
-        const double out = swept_out(*fields[i], velocity, dt);
+        const double out = swept_out(*fields[i], velocity, dt),
+                     in = swept_in(held(i), velocity, dt);
         ledgers_[i].outflow += out;
-        ledgers_[i].numerical += out;  // and less, once advection has carried it out
+        ledgers_[i].inflow += in;
+        ledgers_[i].numerical += out - in;  // until advection has carried it
     }
 }
 
@@ -167,7 +197,7 @@ void Ledger::note_diffusion(const Scalars& now, const std::array<double, 2>& dif
     for (std::size_t i = 0; i < 2; ++i) {
         if (diffusivity[i] == 0) continue;
         const double delta = change(i, *fields[i]),
-                     conducted = conducted_in(*fields[i], diffusivity[i], dt);
+                     conducted = conducted_in(*fields[i], held(i), diffusivity[i], dt);
         ledgers_[i].diffused += conducted;
         ledgers_[i].numerical += delta - conducted;
     }

@@ -56,7 +56,10 @@ class Ledger {
     double amount(const SparseField& field) const;
     double open_part(int axis, const Vec3i& face) const;
     double swept_out(const SparseField& field, const FaceField& velocity, double dt) const;
-    double conducted_in(const SparseField& field, double diffusivity, double dt) const;
+    double swept_in(const ScalarHold& held, const FaceField& velocity, double dt) const;
+    double conducted_in(const SparseField& field, const ScalarHold& held, double diffusivity,
+                        double dt) const;
+    const ScalarHold& held(std::size_t which) const;
     double change(std::size_t which, const SparseField& field);
 
     const Domain& domain_;

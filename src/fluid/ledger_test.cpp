@@ -134,5 +134,41 @@ TEST(Ledger, CountsWhatDiffusesThroughOpenSides) {
     EXPECT_NEAR(l.numerical, 0, 20 * 1e-5 * l.before);
 }
 
+TEST(Ledger, CountsWhatFlowsIn) {
+    SmokeParams params = unit_domain(32, true);
+    params.domain.x_min = SideKind::Inflow;
+    params.domain.x_max = SideKind::Open;
+    params.domain.sides.x_min.emplace();
+    params.domain.sides.x_min->velocity = Keyed<Vec3d>(Vec3d(1, 0, 0));
+    params.domain.sides.x_min->density = Keyed<double>(0.5);
+    params.density_advection = AdvectionScheme::SemiLagrangian;
+    SmokeSolver solver(params, still_world());
+    set_velocity(solver, [](const Vec3d&) { return Vec3d(1, 0, 0); });
+    solver.restart_ledger();
+    Job job;
+    for (int i = 0; i < 40; ++i) solver.step(0.05, job);
+    const ScalarLedger& l = solver.ledger().density();
+    const double layer = 1.0 / 32;  // of one cell's thickness
+    EXPECT_NEAR(l.inflow, 0.5 * 1 * 2 * layer, 0.02 * layer);
+    EXPECT_NEAR(l.after, 0.5 * layer, 0.01 * layer) << "two seconds fill the box";
+    EXPECT_NEAR(l.outflow, 0.5 * layer, 0.05 * layer);
+    EXPECT_NEAR(sum_of(l), l.after, 1e-6 * l.after);
+}
+
+TEST(Ledger, CountsWhatHeldWallsConduct) {
+    SmokeParams params = unit_domain(32, true, SideKind::NoSlip);
+    params.domain.sides.x_min.emplace();
+    params.domain.sides.x_min->temperature = Keyed<double>(params.ambient_temperature + 10);
+    params.thermal_diffusivity = 0.01;
+    SmokeSolver solver(params, still_world());
+    solver.restart_ledger();
+    Job job;
+    for (int i = 0; i < 20; ++i) solver.step(0.1, job);
+    const ScalarLedger& l = solver.ledger().heat();
+    EXPECT_GT(l.diffused, 0);
+    EXPECT_NEAR(l.diffused, l.after, 1e-3 * l.after) << "all heat comes through the wall";
+    EXPECT_NEAR(l.numerical, 0, 1e-3 * l.after);
+}
+
 }  // namespace
 }  // namespace gischt

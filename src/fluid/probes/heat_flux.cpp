@@ -23,11 +23,14 @@ Beyond beyond_side(const SmokeSolver& solver, int axis, int end,
     }
     const double ambient = solver.params().ambient_temperature;
     if (wall_temperature) return {*wall_temperature - ambient, 0.5 * d.h};
-    switch (d.scalar_borders()(axis, end)) {
+    const ScalarHold& held = d.held.temperature;
+    const auto deviation =
+        static_cast<double>(held.value[static_cast<std::size_t>(2 * axis + end)]);
+    switch (held.borders(axis, end)) {
         case Border::Zero:
-            return {0, d.h};
+            return {deviation, d.h};
         case Border::Odd:
-            return {0, 0.5 * d.h};
+            return {deviation, 0.5 * d.h};
         default:
             return {};
     }

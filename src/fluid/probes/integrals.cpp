@@ -33,6 +33,7 @@ class BlockEnergy {
         for (int a = 0; a < d.axes(); ++a) {
             float* faces = scratch.array(slot_velocity + a, lattice_.count());
             gather_block_faces(solver.state().velocity, a, lattice_, d.velocity_borders(a), faces);
+            add_side_velocity(d, a, lattice_, faces);
             u_[static_cast<std::size_t>(a)] = faces;
         }
     }

@@ -81,6 +81,23 @@ TEST(SideFlux, OfALinearTemperatureIsThatOfConduction) {
     }
 }
 
+TEST(SideFlux, KnowsWhatTheDomainHolds) {
+    SmokeParams params = unit_domain(16, true, SideKind::NoSlip);
+    const double ambient = params.ambient_temperature;
+    params.domain.sides.x_min.emplace();
+    params.domain.sides.x_min->temperature = Keyed<double>(ambient + 10);
+    params.domain.sides.x_max.emplace();
+    params.domain.sides.x_max->temperature = Keyed<double>(ambient - 10);
+    params.thermal_diffusivity = 0.02;
+    SmokeSolver solver(params, still_world());
+    set_scalars(solver, nullptr, [&](const Vec3d& p) { return ambient + 10 - 20 * p.x; });
+    Job job;
+    solver.step(0.1, job);  // a steady state
+    EXPECT_NEAR(measure_side_flux(solver, 0, 0, std::nullopt).total, 0.02 * 20, 1e-3);
+    EXPECT_NEAR(measure_side_flux(solver, 0, 1, std::nullopt).total, -0.02 * 20, 1e-3);
+    EXPECT_EQ(measure_side_flux(solver, 1, 0, std::nullopt).total, 0);
+}
+
 std::vector<ProbeParams> one_of_each() {
     PointProbe point;
     point.points = {{0.5, 0.5, 0.2}, {0.1, 0.9, 0.3}};

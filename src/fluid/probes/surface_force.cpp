@@ -22,7 +22,7 @@ class ForceOnSolid {
     ForceOnSolid(const SmokeSolver& solver, std::size_t solid)
         : solver_(solver),
           solid_(solver.world().solids.at(solid)),
-          shape_(solid_.shape_at(solver.state().time)),
+          shape_(solid_, solver.state().time),
           center_(solid_.position.at(solver.state().time)),
           pressure_(StateLattice::pressure(solver)) {
         for (int a = 0; a < solver.domain().axes(); ++a) {
@@ -57,13 +57,13 @@ class ForceOnSolid {
     bool find_chord(SurfacePiece& piece) const {
         const Domain& d = solver_.domain();
         const Vec3d center = d.center_of(piece.cell);
-        if (std::abs(signed_distance(shape_, center)) > d.h) return false;
+        if (std::abs(shape_.signed_distance(center)) > d.h) return false;
         std::array<Vec3d, 4> corner;
         std::array<double, 4> phi{};
         for (std::size_t i = 0; i < 4; ++i) {
             const bool right = i == 1 || i == 2, top = i >= 2;
             corner[i] = center + 0.5 * d.h * Vec3d(right ? 1 : -1, top ? 1 : -1, 0);
-            phi[i] = signed_distance(shape_, corner[i]);
+            phi[i] = shape_.signed_distance(corner[i]);
         }
         std::array<Vec3d, 4> end;
         std::size_t count = 0;
@@ -75,7 +75,7 @@ class ForceOnSolid {
         if (count != 2) return false;
         const Vec3d chord = end[1] - end[0];
         piece.middle = 0.5 * (end[0] + end[1]);
-        const double own = signed_distance(shape_, piece.middle);
+        const double own = shape_.signed_distance(piece.middle);
         if (own > solver_.solids().signed_distance(piece.middle) + 1e-6 * d.h) return false;
         piece.normal = normal_at(piece.middle);
         piece.point = piece.middle - own * piece.normal;
@@ -99,7 +99,7 @@ class ForceOnSolid {
         if (piece.area == Vec3d{}) return false;
         // Of several solids the nearest has the piece.
         const Vec3d center = d.center_of(c);
-        const double own = signed_distance(shape_, center);
+        const double own = shape_.signed_distance(center);
         if (own > solver_.solids().signed_distance(center) + 1e-6 * d.h) return false;
         piece.normal = normal_at(center);
         piece.middle = piece.point = center - own * piece.normal;
@@ -123,7 +123,7 @@ class ForceOnSolid {
             Vec3d step;
             step[a] = 0.01 * d.h;  // short against curvature, long against rounding
             gradient[a] =
-                signed_distance(shape_, point + step) - signed_distance(shape_, point - step);
+                shape_.signed_distance(point + step) - shape_.signed_distance(point - step);
         }
         const double size = length(gradient);
         return size > 0 ? gradient / size : Vec3d{};
@@ -156,7 +156,7 @@ class ForceOnSolid {
 
     const SmokeSolver& solver_;
     const SolidParams& solid_;
-    Shape shape_;
+    PlacedSolid shape_;
     Vec3d center_;
     StateLattice pressure_;
     std::vector<StateLattice> velocity_;
@@ -169,7 +169,9 @@ SolidForce measure_solid_force(const SmokeSolver& solver, std::size_t solid, boo
         throw Error(ErrorKind::Usage, "probe", "there is no such solid to measure a force on");
     }
     const ForceOnSolid force(solver, solid);
-    const bool has_friction = viscous && solver.params().viscosity > 0;
+    // What slips along a solid does not pull it.
+    const bool has_friction =
+        viscous && solver.params().viscosity > 0 && solver.params().solid_slip == SolidSlip::NoSlip;
     std::vector<SolidForce> parts(static_cast<std::size_t>(solver.blocks().size()));
     parallel_for(solver.blocks().size(), 1, [&](int block) {
         if (!solver.solids().is_cut(block)) return;

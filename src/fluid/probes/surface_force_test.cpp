@@ -85,6 +85,7 @@ TEST(SolidForce, IsTheFrictionOfAShearFlowOnAPlane) {
             world.solids = {plane};
             SmokeParams params = unit_domain(32, true, SideKind::Open);
             params.viscosity = 0.01;
+            params.solid_slip = SolidSlip::NoSlip;
             SmokeSolver solver(params, world);
             const double rate = 3;
             set_velocity(solver,
@@ -108,6 +109,7 @@ TEST(SolidForce, IsTheTorqueOfARotatingFluid) {
         world.solids = {ball(center, radius)};
         SmokeParams params = unit_domain(n, true);
         params.viscosity = 0.02;
+        params.solid_slip = SolidSlip::NoSlip;
         SmokeSolver solver(params, world);
         set_velocity(solver, [&](const Vec3d& p) {
             const Vec3d arm = p - center;
