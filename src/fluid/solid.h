@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "math/keyframes.h"
 #include "schema/table.h"
@@ -28,6 +29,7 @@ struct SolidParams {
     std::shared_ptr<const MeshDistance> mesh;
     Keyed<double> scale = 1.0;                 // of a mesh, about its origin, at first
     std::optional<Keyed<double>> temperature;  // K, of its surface; unset: insulated
+    std::string name = {};                     // for probes
 
     // Throws Error{Usage} for a mesh, which is no simple shape.
     Shape shape_at(double time) const;
