@@ -102,7 +102,7 @@ static std::string motion_text(const Value& whole) {
         Value copy = *part;
         if (copy.is_array()) {
             for (Value& element : copy.array()) {
-                drop_looks(element, std::string_view(key) == "solid");
+                if (element.is_table()) drop_looks(element, std::string_view(key) == "solid");
             }
         }
         text += std::string(key) + to_inline_toml(copy);
