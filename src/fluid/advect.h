@@ -27,8 +27,8 @@ void drop_small(const BlockMap& blocks, SparseField& field, float floor);
 struct AdvectedScalar {
     SparseField *now = nullptr, *predicted = nullptr, *next = nullptr;
     AdvectionScheme scheme = AdvectionScheme::MacCormack;
-    float factor = 1;  // decay over the step
-    float floor = 0;   // smaller results become zero
+    float factor = 1;                   // decay over the step
+    float floor = 0;                    // smaller results become zero
     const ScalarHold* sides = nullptr;  // what the domain's sides hold; null: ambient
 };
 

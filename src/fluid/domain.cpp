@@ -114,13 +114,13 @@ Borders Domain::velocity_borders(int axis) const {
 }
 
 Sides Domain::pressure_sides() const {
-    Sides sides{};
+    Sides rules{};
     for (std::size_t s = 0; s < 6; ++s) {
-        sides[s] = side[s] == SideKind::Open       ? Side::Open
+        rules[s] = side[s] == SideKind::Open       ? Side::Open
                    : side[s] == SideKind::Periodic ? Side::Periodic
                                                    : Side::Wall;
     }
-    return sides;
+    return rules;
 }
 
 }  // namespace gischt

@@ -49,8 +49,7 @@ class Emitters {
   public:
     // `frame_time`: duration of a frame, s; `cell`: edge of the fluid's cells, m. Throws
     // Error{Usage} on negative rates and sizes, and for a mesh without a body.
-    Emitters(std::vector<EmitterParams> emitters, double ambient_temperature, double frame_time,
-             double cell);
+    Emitters(std::vector<EmitterParams> emitters, double ambient, double frame_time, double cell);
 
     // Acts for dt seconds up to `time`. `temperature` is T - T_ambient.
     void apply(const Domain& domain, const BlockMap& blocks, double time, double dt,

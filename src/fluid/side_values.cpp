@@ -91,7 +91,7 @@ double profile_along(const Domain& domain, int axis, double s) {
 
 }  // namespace
 
-SideValues side_values_at(const Domain& domain, double time, double ambient_temperature) {
+SideValues side_values_at(const Domain& domain, double time, double ambient) {
     SideValues v;
     v.density.borders = v.temperature.borders = domain.scalar_borders();
     for (std::size_t s = 0; s < 2 * static_cast<std::size_t>(domain.axes()); ++s) {
@@ -102,8 +102,7 @@ SideValues side_values_at(const Domain& domain, double time, double ambient_temp
         if (p.density) v.density.value[s] = static_cast<float>(p.density->at(time));
         if (p.temperature) {
             if (is_wall(domain.side[s])) v.temperature.borders.side[s] = Border::Odd;
-            v.temperature.value[s] =
-                static_cast<float>(p.temperature->at(time) - ambient_temperature);
+            v.temperature.value[s] = static_cast<float>(p.temperature->at(time) - ambient);
         }
         v.density.is_plain &= v.density.value[s] == 0;
         v.temperature.is_plain &= v.temperature.value[s] == 0;

@@ -28,8 +28,8 @@ struct SideValues {
     ScalarHold temperature;           // T - T_ambient, K
 };
 
-// At a time in seconds. `ambient_temperature` in K.
-SideValues side_values_at(const Domain& domain, double time, double ambient_temperature);
+// At a time in seconds. `ambient` temperature in K.
+SideValues side_values_at(const Domain& domain, double time, double ambient);
 
 // Normal velocity of an inflow at a face on it, m/s: the side's times the profile, which in 3-D is
 // the product of two parabolas, 16 y (H - y) z (W - z) / (H W)^2. Edges shared with periodic and

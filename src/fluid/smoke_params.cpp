@@ -65,6 +65,16 @@ static const std::vector<Choice<AdvectionScheme>>& scalar_schemes() {
     return words;
 }
 
+const Table<SolidHeat>& solid_heat_table() {
+    using P = SolidHeat;
+    static const Table<P> table =
+        Table<P>("solid_heat", "A solid whose surface holds a temperature")
+            .add("solid", &P::solid, {.help = "Its name in the scene", .required = true})
+            .add("temperature", &P::temperature,
+                 {.unit = "K", .help = "Of its surface", .min = 0, .required = true});
+    return table;
+}
+
 const Table<SmokeParams>& smoke_table() {
     using P = SmokeParams;
     static const Table<P> table =
@@ -98,6 +108,8 @@ const Table<SmokeParams>& smoke_table() {
                     {{"free_slip", SolidSlip::FreeSlip, "it glides along them"},
                      {"no_slip", SolidSlip::NoSlip, "it sticks to them, as far as it is viscous"}},
                     {.help = "What the fluid does at the surface of solids"})
+            .list("solid_heat", &P::solid_heat, solid_heat_table(),
+                  {.help = "Solids that hold a temperature; the others are insulated"})
             .add("initial_velocity", &P::initial_velocity,
                  {.unit = "m/s", .help = "Of all air in the beginning"})
             .choice("initial_flow", &P::initial_flow,

@@ -41,6 +41,13 @@ struct SmokeOutput {
 };
 const Table<SmokeOutput>& smoke_output_table();
 
+// A solid of the scene whose surface holds a temperature.
+struct SolidHeat {
+    std::string solid;            // its name
+    Keyed<double> temperature{};  // K
+};
+const Table<SolidHeat>& solid_heat_table();
+
 // Smoke in air as an incompressible fluid with buoyancy (Boussinesq).
 struct SmokeParams {
     DomainParams domain;
@@ -56,6 +63,7 @@ struct SmokeParams {
     std::optional<double> density_half_life, temperature_half_life;        // s
     double viscosity = 0, thermal_diffusivity = 0, smoke_diffusivity = 0;  // m^2/s
     SolidSlip solid_slip = SolidSlip::FreeSlip;
+    std::vector<SolidHeat> solid_heat;  // other solids are insulated
     Vec3d initial_velocity;  // m/s; of vortices x is the largest speed
     InitialFlow initial_flow = InitialFlow::Uniform;
 

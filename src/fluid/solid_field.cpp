@@ -45,12 +45,8 @@ float open_fraction(float a, float b, float c, float d) {
 }
 
 SolidField::SolidField(const Domain& domain, const BlockMap& blocks,
-                       std::vector<SolidParams> solids, SolidSlip slip, double ambient_temperature)
-    : domain_(domain),
-      blocks_(blocks),
-      solids_(std::move(solids)),
-      slip_(slip),
-      ambient_(ambient_temperature) {
+                       std::vector<SolidParams> solids, SolidSlip slip, double ambient)
+    : domain_(domain), blocks_(blocks), solids_(std::move(solids)), slip_(slip), ambient_(ambient) {
     for (const SolidParams& s : solids_) {
         check_solid(s);
         is_moving_ |= s.is_moving();

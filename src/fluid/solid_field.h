@@ -15,9 +15,9 @@ namespace gischt {
 // All solids of a domain at one moment, as the fluid sees them.
 class SolidField {
   public:
-    // Domain and blocks must outlive it; `ambient_temperature` in K. Throws as check_solid() does.
+    // Domain and blocks must outlive it; `ambient` temperature in K. Throws as check_solid() does.
     SolidField(const Domain& domain, const BlockMap& blocks, std::vector<SolidParams> solids,
-               SolidSlip slip = SolidSlip::FreeSlip, double ambient_temperature = 0);
+               SolidSlip slip = SolidSlip::FreeSlip, double ambient = 0);
 
     bool is_empty() const { return solids_.empty(); }
     bool is_moving() const { return is_moving_; }

@@ -48,12 +48,14 @@ void SolidField::find_no_slip_ghosts(int axis) {
 void SolidField::measure_block(int block) {
     const Box3i cells = blocks_.cells(block);
     const Vec3d lo = node(cells.lo), hi = node(cells.hi);
-    const double margin = 2 * domain_.h;
-    if (signed_distance(0.5 * (lo + hi)) > 0.5 * length(hi - lo) + margin) return;
+    const double margin = 2 * domain_.h, reach = 0.5 * length(hi - lo) + margin,
+                 middle = signed_distance(0.5 * (lo + hi));
+    if (middle > reach) return;
+    const bool is_deep = middle < -reach;  // no surface near
     for (int a = 0; a < domain_.axes(); ++a) {
         for_cells(domain_.faces_of(cells, a), [&](const Vec3i& f) {
             const Vec3d p = domain_.face_center(a, f);
-            const double distance = signed_distance(p);
+            const double distance = is_deep ? middle : signed_distance(p);
             distance_.ref(a, f) = static_cast<float>(distance);
             if (is_moving_ && distance < margin) {
                 wall_.ref(a, f) = static_cast<float>(velocity(p)[a]);
@@ -91,7 +93,10 @@ void SolidField::measure_heat(int block) {
         const int s = nearest(p, true);
         if (s < 0) return;
         const auto at = static_cast<std::size_t>(s);
-        heat_distance_.ref(c) = static_cast<float>(shapes_[at].signed_distance(p));
+        // A cell whose centre lies on the surface is one of the fluid, as elsewhere.
+        const double distance = shapes_[at].signed_distance(p), least = 1e-6 * domain_.h;
+        heat_distance_.ref(c) =
+            static_cast<float>(distance < 0 ? distance : std::max(distance, least));
         heat_value_.ref(c) = static_cast<float>(solids_[at].temperature->at(time_) - ambient_);
     });
     // Heat passes the surfaces that hold it: there the links to what they hold count, not faces.

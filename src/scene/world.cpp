@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -144,6 +145,22 @@ std::optional<SolidParams> solid_of(const SurfaceParams& s, const std::string& f
     return solid;
 }
 
+// Gives solids the temperatures that a fluid's parameters ask for.
+void heat_solids(std::vector<SolidParams>& solids, const std::vector<SolidHeat>& heats) {
+    for (const SolidHeat& heat : heats) {
+        const auto named = [&](const SolidParams& s) { return s.name == heat.solid; };
+        const auto found = std::ranges::find_if(solids, named);
+        if (found == solids.end()) {
+            std::vector<std::string> names;
+            for (const SolidParams& s : solids) names.push_back(s.name);
+            throw Error(ErrorKind::Usage, "solid_heat",
+                        "no solid '" + heat.solid + "' that the smoke meets",
+                        hint_for(heat.solid, names));
+        }
+        found->temperature = heat.temperature;
+    }
+}
+
 // The vectors of a field under a linear map.
 static void map_vectors(Field& field, const Transform& map) {
     auto &x = field.component[0], &y = field.component[1], &z = field.component[2];
@@ -205,7 +222,9 @@ struct SourceOf {
         for (EmitterParams& e : params.sources) {
             if (e.kind == EmitterKind::Mesh) e.body = body_of(e.mesh);
         }
-        return std::make_unique<SmokeSource>(params, world_of(f.common.name, true));
+        FluidWorld world = world_of(f.common.name, true);
+        heat_solids(world.solids, params.solid_heat);
+        return std::make_unique<SmokeSource>(params, world);
     }
     std::unique_ptr<FluidSource> operator()(const FluidOf<ParticleParams>& f) const {
         ParticleInputs inputs;

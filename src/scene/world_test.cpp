@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "fluid/smoke_source.h"
 #include "scene/load.h"
 #include "schema/toml.h"
 
@@ -214,6 +215,51 @@ TEST(World, FillsTheMeshOfAFile) {
     EXPECT_THROW(filled(), Error);  // open
     std::filesystem::remove(file);
     EXPECT_THROW(filled(), Error);  // missing
+}
+
+// A body of a file stands in the smoke's way, as the scene puts it, and smokes; one with a hole is
+// reported and stands in nothing's way.
+TEST(World, SmokeMeetsTheMeshOfAFile) {
+    const auto file = std::filesystem::temp_directory_path() / "gischt_world_test_body.obj";
+    const auto write = [&](const char* faces) {
+        std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" << faces;
+    };
+    const std::string keys =
+        "[fluid]\nname = 'air'\ntype = 'smoke'\ndomain = { resolution = 16, max = [2, 2, 2] }\n"
+        "[[fluid.source]]\nshape = 'mesh'\ndensity = 1\nposition = [0.2, 0.3, 0.4]\n"
+        "mesh = { scale = 1.5, file = '" +
+        file.string() +
+        "' }\n"
+        "[[fluid.solid_heat]]\nsolid = 'corner'\ntemperature = 350\n"
+        "[[solid]]\ntype = 'mesh'\nname = 'corner'\nup = 'z'\nscale = 2\ntranslate = [0.1, 0, 0]\n"
+        "rotate_degrees = [0, 0, 90]\nfile = '" +
+        file.string() + "'\n";
+    const Scene scene = load_scene_tree("test", parse_toml(keys, "t"), "", {}).scene;
+    const auto solids = [&] {
+        const auto source = make_source(scene, scene.fluids[0]);
+        return dynamic_cast<SmokeSource&>(*source).solver().world().solids;
+    };
+    write("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    ASSERT_EQ(solids().size(), 1u);
+    const PlacedSolid placed(solids()[0], 0);
+    // Turned by 90 degrees about z, the legs along x and y are twice those along y and -x.
+    EXPECT_TRUE(placed.is_inside({0.1 - 0.2, 0.2, 0.2}));
+    EXPECT_FALSE(placed.is_inside({0.1 + 0.2, 0.2, 0.2}));
+    EXPECT_NEAR(placed.bounds().lo.x, 0.1 - 2, 1e-9);
+    EXPECT_NEAR(placed.bounds().hi.y, 2, 1e-9);
+    EXPECT_EQ(solids()[0].name, "corner");
+    EXPECT_EQ(solids()[0].temperature->at(0), 350);
+    std::vector<std::string> heard;
+    Job job;
+    job.on_message = [&](Job::Level, std::string_view text) { heard.emplace_back(text); };
+    report_unmet_solids(scene, scene.fluids[0], job);
+    EXPECT_TRUE(heard.empty());
+    write("f 1 3 2\nf 1 2 4\nf 1 4 3\n");
+    report_unmet_solids(scene, scene.fluids[0], job);
+    ASSERT_EQ(heard.size(), 1u);
+    EXPECT_NE(heard[0].find("'corner' is a mesh that is not closed"), std::string::npos);
+    EXPECT_THROW(solids(), Error);  // its source has no inside
+    std::filesystem::remove(file);
 }
 
 }  // namespace
