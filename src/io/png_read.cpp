@@ -54,6 +54,7 @@ bool read_header(Decoder& d, png_structp png, png_infop info) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_read_fn(png, &d, on_read);
     png_set_user_limits(png, 65536, 65536);
+    png_set_chunk_malloc_max(png, 8 << 20);  // bytes; Debian's library has no limit of its own
     png_read_info(png, info);
     d.packed_row = static_cast<double>(png_get_rowbytes(png, info));
     png_set_expand(png);
