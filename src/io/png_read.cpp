@@ -10,6 +10,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -47,6 +48,21 @@ void on_read(png_structp png, png_bytep data, std::size_t size) {
     if (size > decoder->bytes.size() - decoder->position) png_error(png, "ends too early");
     std::memcpy(data, decoder->bytes.data() + decoder->position, size);
     decoder->position += size;
+}
+
+// Whether every chunk up to the last, IEND, ends within the file: libpng takes the memory for some
+// kinds before it reads them.
+bool has_whole_chunks(std::string_view bytes) {
+    constexpr std::size_t around = 12;  // bytes: length, kind, checksum
+    for (std::size_t at = 8; bytes.size() - at >= around;) {
+        std::size_t length = 0;  // big-endian
+        for (std::size_t i = 0; i < 4; ++i)
+            length = length << 8 | static_cast<unsigned char>(bytes[at + i]);
+        if (length > bytes.size() - at - around) return false;
+        if (bytes.substr(at + 4, 4) == "IEND") return true;
+        at += length + around;
+    }
+    return false;
 }
 
 // Size and layout, with every kind of PNG expanded to RGB or RGBA of 8 or 16 bits.
@@ -137,6 +153,9 @@ Image read_png(const std::string& path) {
     const auto* start = reinterpret_cast<const unsigned char*>(bytes.data());
     if (png_sig_cmp(start, 0, std::min<std::size_t>(8, bytes.size())) != 0 || bytes.size() < 8) {
         throw Error(ErrorKind::Input, path, "is not a PNG file");
+    }
+    if (!has_whole_chunks(bytes)) {
+        throw Error(ErrorKind::Input, path, "broken PNG file: ends too early");
     }
     Decoder d(bytes);
     Reader reader(d);
