@@ -52,17 +52,18 @@ class KnocksCase(unittest.TestCase):
 
 class Signals(KnocksCase):
     def stops(self, seconds, *arguments, by=signal.SIGINT):
-        process = self.start(*arguments, "-q")
+        process = self.start(*arguments)
         try:
-            process.wait(timeout=seconds)
-            self.fail(f"{arguments} was done within {seconds} s: {process.communicate()}")
+            said = process.communicate(timeout=seconds)
+            self.fail(f"{arguments} was done within {seconds} s: {said}")
         except subprocess.TimeoutExpired:
             pass
         asked = time.monotonic()
         process.send_signal(by)
         said = process.communicate(timeout=60)[1].decode()
         taken = time.monotonic() - asked
-        self.assertEqual(process.returncode, 130, f"{arguments}\n{said}")
+        # Before main() has begun the system ends it, which a shell calls 130 too.
+        self.assertIn(process.returncode, (130, -by), f"{arguments}\n{said}")
         self.assertLess(taken, AT_ONCE, arguments)
         return taken
 
@@ -115,7 +116,8 @@ class SignalsLong(Signals):
         process = self.start("info", "c/smoke_0001.vdb")  # writes nothing: the signal's own way to end it
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
-        self.assertIn(process.wait(timeout=AT_ONCE), (0, -signal.SIGINT))
+        process.communicate(timeout=AT_ONCE)
+        self.assertIn(process.returncode, (0, -signal.SIGINT))
 
     def test_denoising(self):
         self.run_gischt("render", "cloud", "--set", 'film.aovs=["variance"]', "--set", "fluid.resolution=24", "--size", "1280x720", "--spp", 4,

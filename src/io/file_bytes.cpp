@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/file_bytes.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -22,7 +23,10 @@ std::string read_bytes(const std::string& path) {
     if (!in) throw Error(ErrorKind::Input, path, std::strerror(errno ? errno : ENOENT));
 
     std::string bytes;
-    constexpr std::size_t chunk = std::size_t{1} << 20;
+    // A pipe has no size. A byte more shows the end without another piece.
+    const auto size = std::filesystem::file_size(path, ignored);
+    const std::size_t chunk =
+        ignored ? std::size_t{1} << 20 : std::clamp<std::size_t>(size + 1, 4096, 1 << 20);
     try {
         while (in) {
             const std::size_t had = bytes.size();

@@ -10,6 +10,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -49,11 +50,27 @@ void on_read(png_structp png, png_bytep data, std::size_t size) {
     decoder->position += size;
 }
 
+// Whether every chunk up to the last, IEND, ends within the file: libpng takes the memory for some
+// kinds before it reads them.
+bool has_whole_chunks(std::string_view bytes) {
+    constexpr std::size_t around = 12;  // bytes: length, kind, checksum
+    for (std::size_t at = 8; bytes.size() - at >= around;) {
+        std::size_t length = 0;  // big-endian
+        for (std::size_t i = 0; i < 4; ++i)
+            length = length << 8 | static_cast<unsigned char>(bytes[at + i]);
+        if (length > bytes.size() - at - around) return false;
+        if (bytes.substr(at + 4, 4) == "IEND") return true;
+        at += length + around;
+    }
+    return false;
+}
+
 // Size and layout, with every kind of PNG expanded to RGB or RGBA of 8 or 16 bits.
 bool read_header(Decoder& d, png_structp png, png_infop info) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_read_fn(png, &d, on_read);
     png_set_user_limits(png, 65536, 65536);
+    png_set_chunk_malloc_max(png, 8 << 20);  // bytes; Debian's library has no limit of its own
     png_read_info(png, info);
     d.packed_row = static_cast<double>(png_get_rowbytes(png, info));
     png_set_expand(png);
@@ -136,6 +153,9 @@ Image read_png(const std::string& path) {
     const auto* start = reinterpret_cast<const unsigned char*>(bytes.data());
     if (png_sig_cmp(start, 0, std::min<std::size_t>(8, bytes.size())) != 0 || bytes.size() < 8) {
         throw Error(ErrorKind::Input, path, "is not a PNG file");
+    }
+    if (!has_whole_chunks(bytes)) {
+        throw Error(ErrorKind::Input, path, "broken PNG file: ends too early");
     }
     Decoder d(bytes);
     Reader reader(d);

@@ -69,7 +69,8 @@ class TreeWalk {
         const auto tiles = in_.number<std::uint32_t>(), children = in_.number<std::uint32_t>();
         for (std::uint32_t t = 0; t < tiles; ++t) {
             walk_origin(root_child);
-            in_.skip(layout_.size + 1);  // value, state
+            in_.skip(layout_.size);
+            if (in_.number<std::uint8_t>() > 1) fail("a tile is neither active nor inactive");
         }
         for (std::uint32_t c = 0; c < children; ++c) {
             walk_origin(root_child);
