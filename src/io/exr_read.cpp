@@ -24,6 +24,7 @@
 
 #include "base/error.h"
 #include "image/primaries.h"
+#include "io/exr_check.h"
 #include "io/file_bytes.h"
 
 namespace gischt {
@@ -210,65 +211,8 @@ void sort_channels(Image& image) {
                      [&](const Channel& a, const Channel& b) { return rank(a) < rank(b); });
 }
 
-// What the library would take memory for before it reads: attributes longer than the file, more
-// chunks than it can list, more lines than `checked` lets pass.
-class AttributeWalk {
-  public:
-    explicit AttributeWalk(std::string_view bytes) : rest_(bytes), file_size_(bytes.size()) {}
-
-    void run() {
-        constexpr char several_parts = 0x10;  // in the second byte of the flags
-        const bool is_multipart = (take(8)[5] & several_parts) != 0;
-        while (walk_part() && is_multipart) {
-        }
-    }
-
-  private:
-    // One header; false for the empty one that ends their list.
-    bool walk_part() {
-        bool has_any = false;
-        for (std::string_view name = text(); !name.empty(); name = text()) {
-            has_any = true;
-            text();  // its type
-            const std::string_view value = take(word(take(4), 0));
-            if (name == "chunkCount" && value.size() == 4 && word(value, 0) > file_size_ / 8)
-                fail("a count of chunks");
-            if (name == "dataWindow" && value.size() == 16) {
-                const auto y = [&](std::size_t at) {
-                    return std::int64_t{static_cast<std::int32_t>(word(value, at))};
-                };
-                if (y(12) - y(4) >= 65536) fail("a data window");
-            }
-        }
-        return has_any;
-    }
-    std::string_view text() {
-        const std::size_t end = rest_.find('\0');
-        if (end == rest_.npos) throw std::runtime_error("ends too early");
-        return take(end + 1).substr(0, end);
-    }
-    std::string_view take(std::size_t count) {
-        if (count > rest_.size()) throw std::runtime_error("ends too early");
-        const std::string_view part = rest_.substr(0, count);
-        rest_.remove_prefix(count);
-        return part;
-    }
-    static std::uint32_t word(std::string_view bytes, std::size_t at) {
-        std::uint32_t value = 0;
-        for (std::size_t i = 4; i-- > 0;)
-            value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
-        return value;
-    }
-    [[noreturn]] static void fail(const char* what) {
-        throw std::runtime_error(fmt::format("{} beyond what the file can hold", what));
-    }
-
-    std::string_view rest_;
-    std::size_t file_size_;
-};
-
 Image decode(const std::string& path, const std::string& bytes) {
-    AttributeWalk(bytes).run();
+    check_exr_attributes(bytes);
     MemoryInput in(path, bytes);
     // No reconstruction of a chunk table that an interrupted writer left out: such a file is
     // broken.
