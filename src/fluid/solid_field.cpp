@@ -127,7 +127,7 @@ int SolidField::nearest(const Vec3d& point, bool held_only) const {
 
 Vec3d SolidField::velocity(const Vec3d& point) const {
     if (!is_moving_) return {};
-    const int s = nearest(point, false);
+    const int s = shapes_.size() == 1 ? 0 : nearest(point, false);
     return s < 0 ? Vec3d{} : solids_[static_cast<std::size_t>(s)].velocity_at(time_, point);
 }
 
