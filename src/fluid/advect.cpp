@@ -16,11 +16,11 @@ constexpr int slot_velocity = 0, slot_predicted = 3, slot_out = 6, slot_carried 
 class Sweep {
   public:
     Sweep(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
-          const AdvectOptions& options)
+          Interpolation interpolation)
         : domain_(domain),
           blocks_(blocks),
           speeds_(speeds),
-          options_(options),
+          interpolation_(interpolation),
           dt_over_h_(dt / domain.h) {
         Vec3f peak;
         for (const Vec3f& s : speeds) peak = max(peak, s);
@@ -66,7 +66,7 @@ class Sweep {
         Vec3i halo;
         for (int a = 0; a < 3; ++a) {
             halo[a] = static_cast<int>(std::ceil(speed[a] * dt_over_h_)) +
-                      (options_.interpolation == Interpolation::Linear ? 1 : 2);
+                      (interpolation_ == Interpolation::Linear ? 1 : 2);
         }
         return Lattice::around(blocks_.cells(block), halo, true, domain_.is_2d());
     }
@@ -88,20 +88,19 @@ class Sweep {
         g.dt_over_h = static_cast<float>(dt_over_h_);
         g.face_axis = face_axis;
         g.is_2d = domain_.is_2d();
-        g.interpolation = options_.interpolation;
-        g.trace_order = options_.trace_order;
+        g.interpolation = interpolation_;
         return g;
     }
 
     const Domain& domain() const { return domain_; }
     const BlockMap& blocks() const { return blocks_; }
-    Interpolation interpolation() const { return options_.interpolation; }
+    Interpolation interpolation() const { return interpolation_; }
 
   private:
     const Domain& domain_;
     const BlockMap& blocks_;
     const BlockSpeeds& speeds_;
-    AdvectOptions options_;
+    Interpolation interpolation_;
     double dt_over_h_;
     Vec3i reach_;
 };
@@ -240,9 +239,9 @@ void run_sweep(const Sweep& sweep, const AdvectedVelocity& v, std::span<Advected
 }  // namespace
 
 void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
-            const AdvectOptions& options, AdvectedVelocity& velocity,
+            Interpolation interpolation, AdvectedVelocity& velocity,
             std::span<AdvectedScalar> scalars) {
-    const Sweep sweep(domain, blocks, speeds, dt, options);
+    const Sweep sweep(domain, blocks, speeds, dt, interpolation);
     for (const AdvectedScalar& s : scalars) {
         if (s.sides) activate_sides(domain, blocks, *s.sides, *s.now);
     }

@@ -39,11 +39,6 @@ struct AdvectedVelocity {
     const FaceField* through = nullptr;
 };
 
-struct AdvectOptions {
-    Interpolation interpolation = Interpolation::Linear;
-    int trace_order = 2;  // of Runge-Kutta: 2 or 3
-};
-
 // Largest |component| of the velocity on the faces of each block, m/s.
 using BlockSpeeds = std::vector<Vec3f>;
 BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks, const FaceField& velocity);
@@ -53,7 +48,7 @@ BlockSpeeds measure_speeds(const Domain& domain, const BlockMap& blocks, const F
 // inputs change places: `now` is the new state. Reads and writes about 4 (2 + 3) 5 bytes per cell
 // of active fields.
 void advect(const Domain& domain, const BlockMap& blocks, const BlockSpeeds& speeds, double dt,
-            const AdvectOptions& options, AdvectedVelocity& velocity,
+            Interpolation interpolation, AdvectedVelocity& velocity,
             std::span<AdvectedScalar> scalars);
 
 }  // namespace gischt

@@ -6,6 +6,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+// Inlined wherever it is used, which the many instances of a kernel would else keep the compiler
+// from.
+#ifndef GISCHT_INLINE_LAMBDA
+#define GISCHT_INLINE_LAMBDA HWY_ATTR __attribute__((always_inline))
+#endif
+
 HWY_BEFORE_NAMESPACE();
 // A namespace of its own: other rooms have kernels with the same short names.
 namespace gischt::advection::HWY_NAMESPACE {
@@ -95,17 +101,17 @@ template <int Count>
 HWY_INLINE void load_rows(const float* p, const std::int32_t* base, Floats* out) {
     const Tag d;
     const hn::Repartition<double, Tag> pairs;
-    const auto lower = [&](Floats a, Floats b) HWY_ATTR {
+    const auto lower = [&](Floats a, Floats b) GISCHT_INLINE_LAMBDA {
         return hn::BitCast(d, hn::InterleaveLower(hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
     };
-    const auto upper = [&](Floats a, Floats b) HWY_ATTR {
+    const auto upper = [&](Floats a, Floats b) GISCHT_INLINE_LAMBDA {
         return hn::BitCast(
             d, hn::InterleaveUpper(pairs, hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
     };
     if constexpr (Count == 2) {
         // Rows of lanes n and n + 2 in one block: a0 b0 a2 b2 and a1 b1 a3 b3.
-        const auto two = [&](std::size_t lane) HWY_ATTR {
-            return join_blocks([&](std::size_t b) HWY_ATTR {
+        const auto two = [&](std::size_t lane) GISCHT_INLINE_LAMBDA {
+            return join_blocks([&](std::size_t b) GISCHT_INLINE_LAMBDA {
                 const hn::FixedTag<float, 2> d2;
                 return hn::Combine(Block(), hn::LoadU(d2, p + base[4 * b + lane + 2]),
                                    hn::LoadU(d2, p + base[4 * b + lane]));
@@ -117,9 +123,10 @@ HWY_INLINE void load_rows(const float* p, const std::int32_t* base, Floats* out)
         out[0] = lower(low, high);
         out[1] = upper(low, high);
     } else {
-        const auto row = [&](std::size_t lane) HWY_ATTR {
-            return join_blocks([&](std::size_t b)
-                                   HWY_ATTR { return hn::LoadU(Block(), p + base[4 * b + lane]); });
+        const auto row = [&](std::size_t lane) GISCHT_INLINE_LAMBDA {
+            return join_blocks([&](std::size_t b) GISCHT_INLINE_LAMBDA {
+                return hn::LoadU(Block(), p + base[4 * b + lane]);
+            });
         };
         const Floats r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
         const Floats low01 = hn::InterleaveLower(d, r0, r1), low23 = hn::InterleaveLower(d, r2, r3),
@@ -278,24 +285,26 @@ HWY_INLINE Positions moved(const Positions& p, const Positions& v, float time) {
 }
 
 // Where the fluid at `start` is after `time` (in s/m times h, negative: where it came from).
-template <int Dim>
+template <int Dim, Interpolation Kind>
 HWY_INLINE Positions trace(const AdvectGeometry& g, const Positions& start, const Positions& v,
                            float time) {
     const Positions middle = velocity_at<Dim>(g, moved(start, v, 0.5f * time));
-    if (g.trace_order == 2) return moved(start, middle, time);
-    const Positions late = velocity_at<Dim>(g, moved(start, middle, 0.75f * time));
-    return moved(moved(moved(start, v, time * 2 / 9), middle, time / 3), late, time * 4 / 9);
+    if constexpr (Kind == Interpolation::Cubic) {
+        const Positions late = velocity_at<Dim>(g, moved(start, middle, 0.75f * time));
+        return moved(moved(moved(start, v, time * 2 / 9), middle, time / 3), late, time * 4 / 9);
+    } else {
+        return moved(start, middle, time);
+    }
 }
 
-template <int Dim>
+template <int Dim, Interpolation Kind>
 HWY_INLINE Floats interpolate(const AdvectGeometry& g, const float* p, const Stencil& s) {
-    switch (g.interpolation) {
-        case Interpolation::Linear:
-            return linear<Dim>(g, p, s);
-        case Interpolation::MonotoneCubic:
-            return cubic<Dim>(g, p, s);
-        default:
-            return lagrange<Dim>(g, p, s);
+    if constexpr (Kind == Interpolation::Linear) {
+        return linear<Dim>(g, p, s);
+    } else if constexpr (Kind == Interpolation::MonotoneCubic) {
+        return cubic<Dim>(g, p, s);
+    } else {
+        return lagrange<Dim>(g, p, s);
     }
 }
 
@@ -313,21 +322,24 @@ HWY_INLINE Floats limited(const AdvectGeometry& g, const float* p, const Stencil
 }
 
 // Predicted value plus half the error of the way back, kept inside the range of the corners.
-template <int Dim>
+template <int Dim, Interpolation Kind>
 HWY_INLINE Floats corrected(const AdvectGeometry& g, const AdvectedBlock& q, std::ptrdiff_t at,
                             const Stencil& origin, const Stencil& target) {
     const Tag d;
     const auto error =
-        hn::Sub(hn::LoadU(d, q.before + at), interpolate<Dim>(g, q.predicted, target));
+        hn::Sub(hn::LoadU(d, q.before + at), interpolate<Dim, Kind>(g, q.predicted, target));
     const auto value = hn::MulAdd(hn::Set(d, 0.5f), error, hn::LoadU(d, q.predicted + at));
     return limited<Dim>(g, q.before, origin, value);
 }
 
-template <int Dim>
+template <int Dim, Interpolation Kind>
 HWY_INLINE Floats carried_along(const AdvectGeometry& g, const AdvectedBlock& q,
                                 const Stencil& origin) {
-    const Floats value = interpolate<Dim>(g, q.before, origin);
-    return q.limited ? limited<Dim>(g, q.before, origin, value) : value;
+    const Floats value = interpolate<Dim, Kind>(g, q.before, origin);
+    if constexpr (Kind == Interpolation::Cubic) {
+        if (q.limited) return limited<Dim>(g, q.before, origin, value);
+    }
+    return value;
 }
 
 HWY_INLINE void store(const AdvectedBlock& q, std::ptrdiff_t to, Floats value) {
@@ -337,10 +349,10 @@ HWY_INLINE void store(const AdvectedBlock& q, std::ptrdiff_t to, Floats value) {
     hn::StoreU(hn::IfThenElseZero(keep, value), d, q.out + to);
 }
 
-template <int Dim>
+template <int Dim, Interpolation Kind>
 void advect(const AdvectGeometry& g, std::span<const AdvectedBlock> quantities) {
     const Tag d;
-    const int margin = g.interpolation == Interpolation::Linear ? 0 : 1;
+    const int margin = Kind == Interpolation::Linear ? 0 : 1;
     const std::ptrdiff_t sy = g.size.x, sz = sy * g.size.y;
     bool corrects = false;
     for (const AdvectedBlock& q : quantities) corrects |= q.predicted != nullptr;
@@ -354,29 +366,41 @@ void advect(const AdvectGeometry& g, std::span<const AdvectedBlock> quantities) 
                                       hn::Set(d, static_cast<float>(c.y) + shift(1)),
                                       hn::Set(d, static_cast<float>(c.z) + shift(2))};
                 const Positions v = velocity_at_points<Dim>(g, at);
-                const Stencil origin =
-                    locate<Dim>(g, trace<Dim>(g, start, v, -g.dt_over_h), g.face_axis, margin);
+                const Stencil origin = locate<Dim>(g, trace<Dim, Kind>(g, start, v, -g.dt_over_h),
+                                                   g.face_axis, margin);
                 Stencil target = origin;
                 if (corrects) {
-                    target =
-                        locate<Dim>(g, trace<Dim>(g, start, v, g.dt_over_h), g.face_axis, margin);
+                    target = locate<Dim>(g, trace<Dim, Kind>(g, start, v, g.dt_over_h), g.face_axis,
+                                         margin);
                 }
                 const std::ptrdiff_t to = i + g.out_stride_y * j + g.out_stride_z * k;
                 for (const AdvectedBlock& q : quantities) {
                     store(q, to,
-                          q.predicted ? corrected<Dim>(g, q, at, origin, target)
-                                      : carried_along<Dim>(g, q, origin));
+                          q.predicted ? corrected<Dim, Kind>(g, q, at, origin, target)
+                                      : carried_along<Dim, Kind>(g, q, origin));
                 }
             }
         }
     }
 }
 
+template <int Dim>
+void advect_by(const AdvectGeometry& g, std::span<const AdvectedBlock> quantities) {
+    switch (g.interpolation) {
+        case Interpolation::Linear:
+            return advect<Dim, Interpolation::Linear>(g, quantities);
+        case Interpolation::MonotoneCubic:
+            return advect<Dim, Interpolation::MonotoneCubic>(g, quantities);
+        case Interpolation::Cubic:
+            return advect<Dim, Interpolation::Cubic>(g, quantities);
+    }
+}
+
 void advect_2d_or_3d(const AdvectGeometry& g, std::span<const AdvectedBlock> quantities) {
     if (g.is_2d) {
-        advect<2>(g, quantities);
+        advect_by<2>(g, quantities);
     } else {
-        advect<3>(g, quantities);
+        advect_by<3>(g, quantities);
     }
 }
 

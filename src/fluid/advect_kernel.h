@@ -39,12 +39,11 @@ struct AdvectGeometry {
     int face_axis = -1;   // the points are centres of cells, or lower faces along this axis
     bool is_2d = false;
     Interpolation interpolation = Interpolation::Linear;
-    int trace_order = 2;
 };
 
 // Advects the quantities, which live at the same points and share the traces: the midpoint rule
-// (second-order Runge-Kutta) or Ralston's rule of third order (1962) through the velocity
-// interpolated linearly. Vectorized, the
+// (second-order Runge-Kutta), for cubics through four points Ralston's rule of third order (1962),
+// through the velocity interpolated linearly. Vectorized, the
 // instruction set chosen at run time. The halo must hold the largest displacement plus 1 (2 for the
 // cubic interpolation); what lies further is clamped to it.
 void advect_block(const AdvectGeometry& geometry, std::span<const AdvectedBlock> quantities);

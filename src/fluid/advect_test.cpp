@@ -39,7 +39,7 @@ class Passive {
         FaceField u = velocity_, a = velocity_, b = velocity_;
         AdvectedVelocity v{&u, &a, &b, AdvectionScheme::SemiLagrangian};
         AdvectedScalar s{&now, &predicted_, &next_, scheme};
-        advect(domain, blocks, speeds_, dt, {interpolation}, v, {&s, 1});
+        advect(domain, blocks, speeds_, dt, interpolation, v, {&s, 1});
     }
     double sum() const {
         double total = 0;

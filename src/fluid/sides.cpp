@@ -41,6 +41,23 @@ void close_sides(const Domain& domain, FaceField& velocity) {
     }
 }
 
+void slow_inflow(const Domain& domain, double dt, FaceField& velocity) {
+    const auto factor = static_cast<float>(0.5 * dt / domain.h);
+    for (int a = 0; a < domain.axes(); ++a) {
+        for (int end = 0; end < 2; ++end) {
+            if (domain.side_of(a, end) != SideKind::Open) continue;
+            Box3i faces{{}, domain.cells};
+            faces.lo[a] = end == 0 ? 0 : domain.cells[a];
+            faces.hi[a] = faces.lo[a] + 1;
+            for_cells(faces, [&](const Vec3i& face) {
+                float& u = velocity.ref(a, face);
+                const float inwards = end == 0 ? u : -u;
+                if (inwards > 0) u /= 1 + factor * inwards;
+            });
+        }
+    }
+}
+
 void activate_sides(const Domain& domain, const BlockMap& blocks, const ScalarHold& hold,
                     SparseField& field) {
     if (hold.is_plain) return;

@@ -146,7 +146,7 @@ ProjectionResult SmokeSolver::step_standard(double dt, Job& job) {
         const PhaseTimer timer(job, "advect");
         AdvectedVelocity velocity{&state_.velocity, &velocity_predicted_, &velocity_next_,
                                   params_.velocity_advection};
-        carry(velocity, speeds_, {params_.interpolation}, dt, job);
+        carry(velocity, speeds_, params_.interpolation, dt, job);
     }
     job.check();
     meet_solids_and_sources(time, dt, job);
@@ -181,7 +181,7 @@ void SmokeSolver::push(double time, double dt, Job& job) {
 
 // Advects the velocity and both scalars.
 void SmokeSolver::carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds,
-                        const AdvectOptions& options, double dt, Job& job) {
+                        Interpolation interpolation, double dt, Job& job) {
     const auto scheme = [&](AdvectionScheme wanted) {
         return is_high() && wanted == AdvectionScheme::MacCormack ? AdvectionScheme::SemiLagrangian
                                                                   : wanted;
@@ -206,7 +206,7 @@ void SmokeSolver::carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds,
             solids_.extrapolate(*s.now);
         }
     }
-    advect(domain_, blocks_, speeds, dt, options, velocity, scalars);
+    advect(domain_, blocks_, speeds, dt, interpolation, velocity, scalars);
     ledger_.note_advection(this->scalars(), {decay(params_.density_half_life, dt),
                                              decay(params_.temperature_half_life, dt)});
 }

@@ -87,7 +87,7 @@ class SmokeSolver {
     void hold_sides(double time);
     bool is_high() const { return params_.accuracy == Accuracy::High; }
     ProjectionResult step_standard(double dt, Job& job);
-    void carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds, const AdvectOptions& options,
+    void carry(AdvectedVelocity& velocity, const BlockSpeeds& speeds, Interpolation interpolation,
                double dt, Job& job);
     void meet_solids_and_sources(double time, double dt, Job& job);
     // Notes what diffusion changes in `history`, if any.

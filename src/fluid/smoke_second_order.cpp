@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "fluid/sides.h"
 #include "fluid/smoke.h"
 
 namespace gischt {
@@ -80,6 +81,7 @@ ProjectionResult SmokeSolver::advance_high(double dt, Job& job) {
     }
     job.check();
     meet_solids_and_sources(time, dt, job);
+    slow_inflow(domain_, dt, state_.velocity);
     history.kick = state_.velocity;
     diffuse_scalars(share * dt, &history, job);
     push(time, share * dt, job);
@@ -137,7 +139,7 @@ void SmokeSolver::advect_high(double dt, Job& job) {
     const FaceField& through = history.previous;
     AdvectedVelocity velocity{&carried, nullptr, &velocity_next_, AdvectionScheme::SemiLagrangian,
                               &through};
-    carry(velocity, measure_speeds(domain_, blocks_, through), {Interpolation::Cubic, 3}, dt, job);
+    carry(velocity, measure_speeds(domain_, blocks_, through), Interpolation::Cubic, dt, job);
     std::swap(state_.velocity, history.previous);
     std::swap(state_.velocity, carried);
 }
