@@ -28,8 +28,8 @@ const Table<WindParams>& wind_table();
 // second order in time (see smoke_second_order.cpp), with cubic interpolation of what is carried.
 enum class Accuracy { Standard, High };
 
-// The motion in the beginning: the same everywhere, or the vortices of Taylor & Green 1937, one pair
-// across the domain: u = A sin x cos y cos z, v = -A cos x sin y cos z, without z in 2-D.
+// The motion in the beginning: the same everywhere, or the vortices of Taylor & Green 1937, one
+// pair across the domain: u = A sin x cos y cos z, v = -A cos x sin y cos z, without z in 2-D.
 enum class InitialFlow { Uniform, TaylorGreen };
 
 enum class VelocityOutput { None, Content, All };
@@ -64,7 +64,7 @@ struct SmokeParams {
     double viscosity = 0, thermal_diffusivity = 0, smoke_diffusivity = 0;  // m^2/s
     SolidSlip solid_slip = SolidSlip::FreeSlip;
     std::vector<SolidHeat> solid_heat;  // other solids are insulated
-    Vec3d initial_velocity;  // m/s; of vortices x is the largest speed
+    Vec3d initial_velocity;             // m/s; of vortices x is the largest speed
     InitialFlow initial_flow = InitialFlow::Uniform;
 
     Accuracy accuracy = Accuracy::Standard;
