@@ -122,7 +122,7 @@ const Table<SmokeParams>& smoke_table() {
                 {{"standard", Accuracy::Standard, "first order in time"},
                  {"high", Accuracy::High,
                   "second order in time and cubic interpolation, in place of what the advection "
-                  "keys say (but for conservative): for detail and for measuring; slower"}},
+                  "keys say (but for conservative): for detail and for measuring"}},
                 {.help = "How well the motion is resolved"})
             .choice("velocity_advection", &P::velocity_advection, schemes(),
                     {.help = "How velocity is carried along"})

@@ -94,7 +94,7 @@ ProjectionResult SmokeSolver::advance_high(double dt, Job& job) {
     projection_.subtract_gradient(state_.velocity, potential_before_, -0.5f);
     job.check();
     // What acts at the end: half the old potential and what is added to it.
-    for (float& p : state_.potential.values()) p *= 0.5f;
+    add(state_.potential, -0.5f, potential_before_);
     const ProjectionResult result = project(dt, job);
 
     // Half of dt G: the change since advection, but with half of the new potential.
