@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "image/coarse_order.h"
+#include "image/coarse_fill.h"
 
 namespace gischt {
 namespace {
@@ -37,24 +37,6 @@ std::vector<SampleRange> united(std::vector<SampleRange> ranges,
     return out;
 }
 
-// Pixels that have no sample yet show the one of their block that has.
-void fill_holes(const Film& film, Image& image) {
-    const CoarseOrder order(film.width(), film.height());
-    for (int y = 0; y < film.height(); ++y) {
-        for (int x = 0; x < film.width(); ++x) {
-            Vec2i source{x, y};
-            for (int edge = 2; film.samples(source.x, source.y) == 0; edge *= 2) {
-                if (edge > CoarseOrder::coarsest) break;
-                source = order.first_of(x, y, edge);
-            }
-            if (source == Vec2i{x, y}) continue;
-            for (auto& plane : image.planes) {
-                plane.values[image.index(x, y)] = plane.values[image.index(source.x, source.y)];
-            }
-        }
-    }
-}
-
 }  // namespace
 
 bool FilmState::is_complete() const {
@@ -67,7 +49,7 @@ bool FilmState::is_complete() const {
 
 Image FilmState::image() const {
     Image out = film->image();
-    fill_holes(*film, out);
+    fill_coarse(*film, out);
     if (has_variance) {
         const std::span<float> plane = out.add_channel("variance.Y");
         for (int y = 0; y < out.height; ++y) {

@@ -30,8 +30,8 @@ struct FilmState {
 
     // Whether every pixel has all samples of the ranges.
     bool is_complete() const;
-    // The film's picture, with variance.Y and samples.Y where they are wanted. A pixel without
-    // sample shows a neighbour that has one (see coarse_order.h).
+    // The film's picture, with variance.Y and samples.Y where they are wanted. While
+    // pixels lack their first sample it is made of the samples around (see coarse_fill.h).
     Image image() const;
     // Adds the samples of another. Throws Error{Input} when ranges overlap or the films differ in
     // size, filter or channels.
