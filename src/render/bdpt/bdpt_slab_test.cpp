@@ -51,8 +51,9 @@ Method by_mlt(int runs, int mutations) {
             Job job;
             const Image image = make_mlt_method(params)->render(view, s, job).image;
             Vec3d sum;
+            const auto color = image.color();
             for (int c = 0; c < 3; ++c) {
-                for (const float v : image.color()[static_cast<std::size_t>(c)])
+                for (const float v : color[static_cast<std::size_t>(c)])
                     sum[c] += static_cast<double>(v);
             }
             return sum / Vec3d(double(image.pixel_count()));

@@ -38,7 +38,7 @@ inline Estimate mean_by_path(const View& view, const Effort& effort) {
     PathParams params;
     Traced traced(view, params, effort.depth);
     return estimate(effort.batches, [&](int batch) {
-        const std::uint64_t key = random_key(effort.seed, static_cast<std::uint64_t>(batch), 77);
+        const std::uint64_t key = random_key(effort.seed, static_cast<std::uint64_t>(batch), 77ULL);
         Vec3d sum;
         for (int i = 0; i < effort.samples; ++i) {
             const PixelSampler numbers(key, 1, 0, 0, static_cast<std::uint32_t>(i));

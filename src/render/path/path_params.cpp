@@ -26,8 +26,9 @@ const Table<PathParams>& path_table() {
                  {.help = "How many of these points a path goes on from", .min = 1, .max = 256})
             .add("surface_splits", &PathParams::surface_splits,
                  {.help = "How many paths go on from an evenly scattering surface that the camera "
-                          "sees; more pay where fog in front of it is dear (profile)",
-                  .min = 1,
+                          "sees; more pay where fog in front of it is dear (profile); 0: 4 where "
+                          "a medium glows, else 1",
+                  .min = 0,
                   .max = 256})
             .add("equiangular", &PathParams::equiangular,
                  {.help = "Further points of a camera ray, by the angle under which points, spots "

@@ -26,7 +26,7 @@ struct PathParams {
     CameraSegment camera = CameraSegment::Profile;
     int points = 8;          // of a camera ray with a profile, at which direct light is taken
     int splits = 8;          // of them from which paths go on
-    int surface_splits = 1;  // paths that go on from an evenly scattering surface that it meets
+    int surface_splits = 0;  // paths that go on from an evenly scattering surface that it meets
     int equiangular = 4;     // more points of such a ray, for lights at finite places alone
     bool bridge = true;      // suns are reached through chains of turns that end in their direction
     double correction = 0.1;  // chance that a cached transmittance is made exact

@@ -56,6 +56,8 @@ PathScene::PathScene(const View& the_view, const PathParams& the_params, Job& jo
         surface_light[static_cast<std::size_t>(light->surface())] = light.get();
         local.push_back({light.get(), -1});
     }
+    // What fires send to a surface varies more from path to path than anything else there.
+    surface_splits = params.surface_splits > 0 ? params.surface_splits : is_emissive ? 4 : 1;
     if (is_emissive && !has_interiors) glow = EmissionSampler(view.media);
     sort_lights(job);
     sky_chance = chance_of_skies();

@@ -30,6 +30,7 @@ struct PathScene {
     bool is_grey = true;               // all channels of all media have the same extinction
     bool is_emissive = false;          // a medium glows
     bool has_interiors = false;        // a surface has an inside
+    int surface_splits = 1;            // of the parameters, or as it suits the media
 
     // A light that is one of many to be drawn from.
     struct Drawn {

@@ -99,7 +99,7 @@ void PathTracer::see(Leg leg, const PixelSampler& sampler) {
 void PathTracer::see_surface(const Leg& leg, const SurfaceHit& hit, const PixelSampler& sampler) {
     if (gather_ && see_both_ways(leg, hit, stream_of(sampler, 1))) return;
     const bool is_even = scene_.view.surfaces.info(hit.surface).material == MaterialKind::Lambert;
-    const int splits = is_even ? scene_.params.surface_splits : 1;
+    const int splits = is_even ? scene_.surface_splits : 1;
     const std::optional<InteriorStack> inside = inside_;
     for (int k = 0; k < splits; ++k) {
         RandomStream random = stream_of(
