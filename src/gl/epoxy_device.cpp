@@ -112,9 +112,13 @@ class EpoxyDevice : public GlDevice {
         }
         GlId id = 0;
         glCreateBuffers(1, &id);
-        // A buffer of nothing is not allowed.
-        glNamedBufferStorage(id, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)),
-                             bytes > 0 ? data : nullptr, GL_DYNAMIC_STORAGE_BIT);
+        // A buffer of nothing is not allowed; one larger than its data is filled afterwards.
+        constexpr std::size_t least = 16;
+        glNamedBufferStorage(id, static_cast<GLsizeiptr>(std::max(bytes, least)),
+                             bytes < least ? nullptr : data, GL_DYNAMIC_STORAGE_BIT);
+        if (data && bytes > 0 && bytes < least) {
+            glNamedBufferSubData(id, 0, static_cast<GLsizeiptr>(bytes), data);
+        }
         check_memory("buffer");
         return id;
     }

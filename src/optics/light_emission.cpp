@@ -185,7 +185,7 @@ void LightEmission::draw_point(std::size_t i, EmittedLight& e, Vec2f direction, 
     const auto* spot = d.is_cone ? static_cast<const SpotLight*>(sources_[i].light) : nullptr;
     e.ray = {d.position,
              spot ? spot->direction(direction) : target_.direction(d.position, direction, extra)};
-    e.pdf_direction = of_point(e.source, e.ray.direction).direction;
+    e.pdf_direction = point_direction_pdf(i, e.ray.direction);
     if (!(e.pdf_direction > 0)) return;
     const LightSample seen = sources_[i].light->sample(d.position + e.ray.direction, {});
     e.power = seen.weight * (1 / e.pdf_direction);
@@ -266,17 +266,17 @@ LightEmission::Densities LightEmission::of_infinity(int source, const Vec3d& tra
             sources_[i].light->pdf(middle, -travel)};
 }
 
+float LightEmission::point_direction_pdf(std::size_t i, const Vec3d& direction) const {
+    const Detail& d = details_[i];
+    if (!d.is_cone) return static_cast<float>(target_.direction_pdf(d.position, direction));
+    if (!target_.is_met_by({d.position, direction})) return 0;
+    const auto& spot = *static_cast<const SpotLight*>(sources_[i].light);
+    return static_cast<float>(spot.share(dot(direction, spot.axis())) / spot.solid_angle());
+}
+
 LightEmission::Densities LightEmission::of_point(int source, const Vec3d& direction) const {
     const auto i = static_cast<std::size_t>(source);
-    const Detail& d = details_[i];
-    double pdf = 0;
-    if (!d.is_cone) {
-        pdf = target_.direction_pdf(d.position, direction);
-    } else if (target_.is_met_by({d.position, direction})) {
-        const auto& spot = *static_cast<const SpotLight*>(sources_[i].light);
-        pdf = spot.share(dot(direction, spot.axis())) / spot.solid_angle();
-    }
-    return {choice_of(i), 0, static_cast<float>(pdf)};
+    return {choice_of(i), 0, point_direction_pdf(i, direction)};
 }
 
 LightEmission::Densities LightEmission::of_medium(int source, const Vec3d& point) const {

@@ -100,6 +100,7 @@ class LightEmission {
     void draw_medium(std::size_t i, EmittedLight& e, float choice, Vec2f place, Vec2f direction,
                      float extra) const;
     EmittedLight draw(std::size_t i, float choice, Vec2f place, Vec2f direction, float extra) const;
+    float point_direction_pdf(std::size_t i, const Vec3d& direction) const;  // 1/sr
     float choice_of(std::size_t i) const {
         return static_cast<float>((cumulative_[i + 1] - cumulative_[i]) / power());
     }

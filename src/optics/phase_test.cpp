@@ -101,7 +101,7 @@ TEST(Phase, MeetsPublishedValues) {
 TEST(Phase, RayleighMeetsItsExtremes) {
     EXPECT_FLOAT_EQ(RayleighPhase{}.value(-1), static_cast<float>(1.5 / (4 * pi)));
     EXPECT_FLOAT_EQ(RayleighPhase{}.value(0), static_cast<float>(0.75 / (4 * pi)));
-    EXPECT_EQ(RayleighPhase{}.sample_cosine(0), -1);
+    EXPECT_FLOAT_EQ(RayleighPhase{}.sample_cosine(0), -1);
     EXPECT_EQ(RayleighPhase{}.sample_cosine(0.5f), 0);
     // 3/8 (c + c^3/3) + 1/2 at c = 1/2.
     EXPECT_NEAR(RayleighPhase{}.sample_cosine(0.703125f), 0.5, 1e-6);
