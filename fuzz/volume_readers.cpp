@@ -20,7 +20,7 @@ void fuzz_vdb(std::string_view bytes) {
     static const ThreadLimit one(1);  // so that a finding comes again
     const InputFile file(bytes, ".vdb");
     VdbReadOptions options;
-    options.max_values = 1 << 22;
+    options.max_values = 1 << 18;
     Job job;
     expect_read_or_refused([&] { read_vdb(file.path(), options, job); });
     expect_read_or_refused([&] { list_vdb(file.path(), job); });
