@@ -144,7 +144,7 @@ class TreeWalk {
         if ((entry_.compression & (blosc | zip)) == 0) return in_.skip(bytes);
         const auto size = in_.number<std::int64_t>();
         if (size <= 0) {
-            if (-size != bytes) fail("a chunk of values has the wrong size");
+            if (size != -bytes) fail("a chunk of values has the wrong size");
             return in_.skip(bytes);
         }
         if (size > in_.left()) in_.fail_short();
