@@ -14,6 +14,16 @@
 #include "io/file_bytes.h"
 #include "readers.h"
 
+// Sanitizers take more addresses than there is memory. GCC defines the first two, clang has
+// features.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool has_bound = false;
+#elif defined(__has_feature)
+constexpr bool has_bound = !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
+#else
+constexpr bool has_bound = true;
+#endif
+
 namespace gischt {
 namespace {
 namespace fs = std::filesystem;
@@ -62,10 +72,10 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "usage: replay READER FOLDER...\n");
         return 2;
     }
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    const rlimit bound{rlim_t{4} << 30, rlim_t{4} << 30};
-    setrlimit(RLIMIT_AS, &bound);
-#endif
+    if (has_bound) {
+        const rlimit bound{rlim_t{4} << 30, rlim_t{4} << 30};
+        setrlimit(RLIMIT_AS, &bound);
+    }
     std::vector<std::filesystem::path> files;
     for (int i = 2; i < argc; ++i) {
         for (auto& file : gischt::files_in(argv[i])) files.push_back(std::move(file));
