@@ -102,7 +102,7 @@ class SignalsLong(Signals):
                 self.assertEqual(self.files(), [])
 
     def test_photons_and_zones(self):
-        for scene, method in (("volume-caustic", "photon"), ("god-rays", "photon"), ("misty-court", "zonal")):
+        for scene, method in (("volume-caustic", "photon"), ("glass-smoke", "photon"), ("misty-court", "zonal")):
             for seconds in (1, 3):
                 self.stops(seconds, "render", scene, "--method", method, "--spp", 100000, "-o", "x.exr")
 
